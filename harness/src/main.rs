@@ -1,0 +1,3 @@
+//! The command `triptych`.
+
+fn main() {}

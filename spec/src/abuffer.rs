@@ -1,0 +1,246 @@
+//! A-buffer: order-independent transparency with per-pixel linked lists.
+//!
+//! Yang, Hensley, Grün and Thibieroz, "Real-Time Concurrent Linked List
+//! Construction on the GPU" (2010), sections 3 and 4.1 and appendix A. Opaque
+//! surfaces come first, with depth ([`opaque`]); transparent fragments in front of
+//! them go into lists ([`build`]), which are sorted ([`sort`]) and blended
+//! ([`resolve`]). Twin: `gpu/src/abuffer.wgsl`.
+//!
+//! Settled errata of the paper's listing: the address that the exchange stores is
+//! the counter's value (the listing names two variables that it never sets); a
+//! fragment beyond the capacity is counted but touches neither head nor node, so
+//! that overflow can lose that fragment, never a list; depth 1 is
+//! [`crate::vertex::DEPTH_ONE`].
+
+use crate::bound::{Bounded, TINY, gamma};
+use crate::raster::{Fragment, cover};
+use crate::scene::Scene;
+use crate::vertex::Primitives;
+
+/// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").
+pub const EOL: u32 = u32::MAX;
+
+/// "No opaque surface": farther than every key.
+pub const NOTHING: u32 = u32::MAX;
+
+/// The nearest opaque surface of every pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Opaque {
+    /// Depth key, or [`NOTHING`].
+    pub key: Vec<u32>,
+    /// Row in [`Primitives::prims`], or [`NOTHING`].
+    pub prim: Vec<u32>,
+}
+
+/// Depth and link of a node (appendix A, `tRWFragmentDepthAndLink`), with what the
+/// comparison needs to name the fragment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// Depth key.
+    pub key: u32,
+    /// The next node, or [`EOL`].
+    pub next: u32,
+    /// Row in [`Primitives::prims`].
+    pub prim: u32,
+    /// Covered samples.
+    pub mask: u32,
+}
+
+/// Heads, nodes and the counter that hands out node addresses (sections 3, 3.1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lists {
+    /// First node of each pixel's list, or [`EOL`].
+    pub heads: Vec<u32>,
+    /// Depth and link, by address.
+    pub nodes: Vec<Node>,
+    /// Colour and opacity, by the same address (section 3.1: one counter
+    /// addresses several buffers).
+    pub colours: Vec<[f32; 4]>,
+    /// How often an address was asked for; what exceeds the capacity overflowed.
+    pub attempts: u32,
+    /// Number of addresses.
+    pub capacity: u32,
+}
+
+/// Lists as runs of an array: `offsets[p]..offsets[p + 1]` is pixel `p`, nearest
+/// fragment first, ties by [`Fragment::prim`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sorted {
+    /// Where each pixel's run starts; one entry more than there are pixels.
+    pub offsets: Vec<u32>,
+    /// The fragments.
+    pub fragments: Vec<Fragment>,
+}
+
+impl Sorted {
+    /// The fragments of a pixel, nearest first.
+    pub fn list(&self, pixel: usize) -> &[Fragment] {
+        &self.fragments[self.offsets[pixel] as usize..self.offsets[pixel + 1] as usize]
+    }
+}
+
+/// Stage `opaque`: the smallest `(key, prim)` of the opaque triangles at each
+/// pixel (section 4.1, step 1).
+pub fn opaque(scene: &Scene, primitives: &Primitives) -> Opaque {
+    let pixels = primitives.size.pixels();
+    let mut nearest = Opaque {
+        key: vec![NOTHING; pixels],
+        prim: vec![NOTHING; pixels],
+    };
+    cover(primitives, |f| {
+        let pixel = f.pixel as usize;
+        let seen = (nearest.key[pixel], nearest.prim[pixel]);
+        if is_opaque(scene, primitives, f.prim) && (f.key, f.prim) < seen {
+            (nearest.key[pixel], nearest.prim[pixel]) = (f.key, f.prim);
+        }
+    });
+    nearest
+}
+
+/// Stage `build`: transparent fragments into linked lists (section 4.1, step 2).
+///
+/// A fragment is kept if and only if its key is less than the opaque key; with
+/// `depth_test` false, all are kept. Insertion follows section 3, steps 1 to 3.
+pub fn build(
+    scene: &Scene,
+    primitives: &Primitives,
+    opaque: &Opaque,
+    depth_test: bool,
+    capacity: u32,
+) -> Lists {
+    let mut lists = Lists {
+        heads: vec![EOL; primitives.size.pixels()],
+        nodes: Vec::new(),
+        colours: Vec::new(),
+        attempts: 0,
+        capacity,
+    };
+    cover(primitives, |f| {
+        let hidden = depth_test && f.key >= opaque.key[f.pixel as usize];
+        if !hidden && !is_opaque(scene, primitives, f.prim) {
+            insert(&mut lists, f, colour(scene, primitives, f.prim));
+        }
+    });
+    lists
+}
+
+/// Section 3's three steps, with appendix A's test for a full buffer before any
+/// head is touched.
+fn insert(lists: &mut Lists, f: Fragment, colour: [f32; 4]) {
+    let address = lists.attempts;
+    lists.attempts = address.checked_add(1).expect("fewer than 2^32 fragments");
+    if address >= lists.capacity {
+        return;
+    }
+    let next = std::mem::replace(&mut lists.heads[f.pixel as usize], address);
+    lists.nodes.push(Node {
+        key: f.key,
+        next,
+        prim: f.prim,
+        mask: f.mask,
+    });
+    lists.colours.push(colour);
+}
+
+/// Stage `sort`: each list in order of `(key, prim)` (section 4.1, step 3). Rows
+/// of `prims` are in order of source triangle, instance and piece, so this is
+/// the total order that the comparison asks for.
+pub fn sort(lists: &Lists) -> Sorted {
+    let mut sorted = Sorted {
+        offsets: vec![0],
+        fragments: Vec::with_capacity(lists.nodes.len()),
+    };
+    for (pixel, &head) in (0_u32..).zip(&lists.heads) {
+        let start = sorted.fragments.len();
+        let mut at = head;
+        while at != EOL {
+            let Node {
+                key,
+                next,
+                prim,
+                mask,
+            } = lists.nodes[at as usize];
+            sorted.fragments.push(Fragment {
+                pixel,
+                prim,
+                key,
+                mask,
+            });
+            at = next;
+        }
+        sorted.fragments[start..].sort_unstable_by_key(|f| (f.key, f.prim));
+        let end = u32::try_from(sorted.fragments.len()).expect("fewer than 2^32 nodes");
+        sorted.offsets.push(end);
+    }
+    sorted
+}
+
+/// Stage `resolve`: every list blended over what lies behind it, nearest first
+/// (section 4.1, step 3). Linear colours, the "over" operator, no clamping.
+///
+/// With layers `c_i, a_i` and the opaque surface or background `b`, the result is
+/// `sum_i T_i a_i c_i + T_n b`, `T_i = prod_{j<i} (1 - a_j)`. Term `i` of an
+/// evaluation in `f32` meets `2i` roundings in `T_i`, two products, and at most
+/// `n + 1` additions in any order, so its error is at most
+/// `gamma(2i + n + 3) |term_i|`; flushing adds [`TINY`] per operation.
+pub fn resolve(
+    scene: &Scene,
+    primitives: &Primitives,
+    opaque: &Opaque,
+    sorted: &Sorted,
+) -> Vec<[Bounded; 3]> {
+    let behind = |pixel: usize| match opaque.prim[pixel] {
+        NOTHING => scene.background,
+        prim => {
+            let [r, g, b, _] = colour(scene, primitives, prim);
+            [r, g, b]
+        }
+    };
+    let blend = |pixel: usize| {
+        let visible = sorted
+            .list(pixel)
+            .iter()
+            .filter(|f| f.key < opaque.key[pixel]);
+        let layers: Vec<[f32; 4]> = visible.map(|f| colour(scene, primitives, f.prim)).collect();
+        over(&layers, behind(pixel))
+    };
+    (0..primitives.size.pixels()).map(blend).collect()
+}
+
+fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
+    let n = u32::try_from(layers.len()).expect("fewer than 2^32 layers");
+    let mut sum = [Bounded {
+        value: 0.0,
+        bound: 0.0,
+    }; 3];
+    let mut add = |i: u32, weight: f64, colour: [f32; 3]| {
+        for (channel, c) in sum.iter_mut().zip(colour) {
+            let term = weight * f64::from(c);
+            channel.value += term;
+            channel.bound += gamma(2 * i + n + 3) * term.abs() + 3.0 * TINY;
+        }
+    };
+    let mut transmittance = 1.0;
+    for (i, &[r, g, b, a]) in (0..).zip(layers) {
+        let a = f64::from(a);
+        add(i, transmittance * a, [r, g, b]);
+        transmittance *= 1.0 - a;
+    }
+    // A surface that nothing covers is stored as it is.
+    if n == 0 {
+        return behind.map(|c| Bounded {
+            value: f64::from(c),
+            bound: 0.0,
+        });
+    }
+    add(n, transmittance, behind);
+    sum
+}
+
+fn is_opaque(scene: &Scene, primitives: &Primitives, prim: u32) -> bool {
+    scene.triangles[primitives.source[prim as usize] as usize].is_opaque()
+}
+
+fn colour(scene: &Scene, primitives: &Primitives, prim: u32) -> [f32; 4] {
+    scene.triangles[primitives.source[prim as usize] as usize].colour
+}

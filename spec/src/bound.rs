@@ -1,0 +1,149 @@
+//! Running error bounds for `f32` arithmetic under WGSL's accuracy rules.
+//!
+//! A [`Bounded`] carries what the specification computes and how far an `f32`
+//! evaluation of the same expression may stray. The rules (WGSL, "Floating Point
+//! Accuracy"): sums and products are correctly rounded in an unspecified
+//! direction, hence within one unit [`U`]; division within 2.5; any subnormal may
+//! be flushed, hence [`TINY`] once per operation; sums may be reassociated and
+//! fused, which [`sum_of_products`] allows for. An operation whose operands leave
+//! the range that WGSL defines has an infinite bound: nothing is promised there.
+
+/// Relative error of one correctly rounded operation, direction unspecified.
+pub const U: f64 = f32::EPSILON as f64;
+
+/// What flushing a subnormal changes at most.
+pub const TINY: f64 = f32::MIN_POSITIVE as f64;
+
+/// WGSL promises division only for divisors between these magnitudes.
+const DIVISOR: [f64; 2] = [TINY, 1.0 / TINY];
+
+/// `gamma_k = kU / (1 - kU)`: the error of `k` roundings, relative to the sum of
+/// the absolute terms (Higham, Accuracy and Stability of Numerical Algorithms,
+/// lemma 3.1).
+pub fn gamma(k: u32) -> f64 {
+    let ku = f64::from(k) * U;
+    ku / (1.0 - ku)
+}
+
+/// The arithmetic that the vertex stage needs, over plain or bounded numbers.
+pub trait Real: Copy {
+    /// An exactly representable constant.
+    fn exact(value: f64) -> Self;
+    /// The number itself, without its bound.
+    fn value(self) -> f64;
+    /// Sum.
+    fn add(self, other: Self) -> Self;
+    /// Difference.
+    fn sub(self, other: Self) -> Self;
+    /// Product.
+    fn mul(self, other: Self) -> Self;
+    /// Quotient.
+    fn div(self, other: Self) -> Self;
+    /// Sum of products of given numbers: the coefficients are rounded to `f32`
+    /// once, the terms added in any order, fused or not.
+    fn sum_of_products(coefficients: [f64; 4], terms: [f64; 4]) -> Self;
+}
+
+impl Real for f64 {
+    fn exact(value: f64) -> Self {
+        value
+    }
+    fn value(self) -> f64 {
+        self
+    }
+    fn add(self, other: Self) -> Self {
+        self + other
+    }
+    fn sub(self, other: Self) -> Self {
+        self - other
+    }
+    fn mul(self, other: Self) -> Self {
+        self * other
+    }
+    fn div(self, other: Self) -> Self {
+        self / other
+    }
+    fn sum_of_products(c: [f64; 4], t: [f64; 4]) -> Self {
+        c[0] * t[0] + c[1] * t[1] + c[2] * t[2] + c[3] * t[3]
+    }
+}
+
+/// A number and the largest error of its `f32` evaluation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounded {
+    /// What the specification computes.
+    pub value: f64,
+    /// Largest distance of a conforming `f32` result; may be infinite.
+    pub bound: f64,
+}
+
+impl Bounded {
+    /// Whether `observed` is a conforming result. NaN never is.
+    pub fn admits(self, observed: f64) -> bool {
+        (observed - self.value).abs() <= self.bound
+    }
+
+    /// Whether the sign of the number is certain for every conforming result.
+    pub fn sign_is_certain(self) -> bool {
+        self.value.abs() > self.bound
+    }
+
+    /// Finishes one operation: the propagated error of the operands, and `roundings`
+    /// units for the operation itself.
+    fn rounded(value: f64, propagated: f64, roundings: f64) -> Self {
+        let reach = value.abs() + propagated;
+        let bound = propagated + roundings * U * reach + TINY;
+        let defined = reach + bound <= f64::from(f32::MAX);
+        Self {
+            value,
+            bound: if defined { bound } else { f64::INFINITY },
+        }
+    }
+}
+
+impl Real for Bounded {
+    fn exact(value: f64) -> Self {
+        Self { value, bound: 0.0 }
+    }
+    fn value(self) -> f64 {
+        self.value
+    }
+    fn add(self, other: Self) -> Self {
+        Self::rounded(self.value + other.value, self.bound + other.bound, 1.0)
+    }
+    fn sub(self, other: Self) -> Self {
+        Self::rounded(self.value - other.value, self.bound + other.bound, 1.0)
+    }
+    fn mul(self, other: Self) -> Self {
+        let propagated = self.value.abs() * other.bound
+            + other.value.abs() * self.bound
+            + self.bound * other.bound;
+        Self::rounded(self.value * other.value, propagated, 1.0)
+    }
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let least = other.value.abs() - other.bound;
+        let most = other.value.abs() + other.bound;
+        if !(least >= DIVISOR[0] && most <= DIVISOR[1]) {
+            return Self {
+                value,
+                bound: f64::INFINITY,
+            };
+        }
+        let propagated = (self.bound + value.abs() * other.bound) / least;
+        Self::rounded(value, propagated, 2.5)
+    }
+    fn sum_of_products(c: [f64; 4], t: [f64; 4]) -> Self {
+        let value = f64::sum_of_products(c, t);
+        let absolute: f64 = c.iter().zip(t).map(|(c, t)| (c * t).abs()).sum();
+        // Rounding of the coefficient, the product, three additions.
+        let flushed: f64 = t.iter().map(|t| TINY * (t.abs() + 2.0)).sum();
+        let largest = c.iter().chain(&t).fold(absolute, |m, x| m.max(x.abs()));
+        let bound = gamma(5) * absolute + flushed;
+        let defined = largest + bound <= f64::from(f32::MAX);
+        Self {
+            value,
+            bound: if defined { bound } else { f64::INFINITY },
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! The meaning of Triptych's algorithms.
+//!
+//! Scalar, single-threaded, without `unsafe`, without hidden state and without a
+//! GPU; written to be read beside the papers. Whatever *decides* (coverage,
+//! depth keys, list order) is integer arithmetic and therefore exact. Whatever is
+//! *reported* (positions, colours) is an `f64` together with a bound on what an
+//! `f32` evaluation under WGSL's accuracy rules may return ([`bound`]).
+//!
+//! | module | stages | twin |
+//! |---|---|---|
+//! | [`vertex`] | transform, clip, snap | `gpu/src/vertex.wgsl` |
+//! | [`raster`] | cover | `gpu/src/raster.wgsl` |
+//! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
+#![forbid(unsafe_code)]
+
+pub mod abuffer;
+pub mod bound;
+pub mod camera;
+pub mod matrix;
+pub mod raster;
+pub mod scene;
+pub mod vertex;

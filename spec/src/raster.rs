@@ -1,0 +1,177 @@
+//! Raster stage: which samples a triangle covers, and the depth key there.
+//!
+//! Integer edge functions with the top-left rule (Pineda 1988), depth as the floor
+//! of an exact rational number. With the guard rectangle of 2^12 pixels and at
+//! most 8 sub-pixel bits, coordinates span L = 2^20, edge functions at most
+//! L^2 = 2^40, and depth numerators at most 2^71: `i64` and `i128` hold them.
+//! Twin: `gpu/src/raster.wgsl`.
+
+use crate::scene::Size;
+use crate::vertex::Primitives;
+
+/// One covered pixel of one triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Fragment {
+    /// Row-major number of the pixel.
+    pub pixel: u32,
+    /// Row in [`Primitives::prims`].
+    pub prim: u32,
+    /// 31-bit depth key at the lowest covered sample.
+    pub key: u32,
+    /// Covered samples, one bit each.
+    pub mask: u32,
+}
+
+/// A triangle prepared for evaluation: corners in positive orientation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setup {
+    corners: [[i64; 3]; 3],
+    /// Twice the area in square sub-pixels; positive.
+    pub area: i64,
+}
+
+/// Columns `start..end` of a row.
+pub type Span = std::ops::Range<u32>;
+
+impl Setup {
+    /// Prepares row `prim`. `None` if the triangle has no area on the grid: by rule
+    /// it covers nothing.
+    pub fn new(primitives: &Primitives, prim: u32) -> Option<Self> {
+        let [a, b, c] = primitives.prims[prim as usize]
+            .map(|corner| primitives.snapped[corner as usize].map(i64::from));
+        let area = edge(a, b, [c[0], c[1]]);
+        match area.signum() {
+            1 => Some(Self {
+                corners: [a, b, c],
+                area,
+            }),
+            -1 => Some(Self {
+                corners: [a, c, b],
+                area: -area,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The three edge functions at a point in sub-pixels; their sum is the area.
+    /// Entry `i` belongs to the edge opposite corner `i`.
+    pub fn edges(&self, point: [i64; 2]) -> [i64; 3] {
+        [0, 1, 2].map(|i| {
+            let (a, b) = self.edge_ends(i);
+            edge(a, b, point)
+        })
+    }
+
+    /// Whether a sample with these edge values belongs to the triangle: inside, or
+    /// on a top or left edge.
+    pub fn covers(&self, edges: [i64; 3]) -> bool {
+        (0..3).all(|i| edges[i] >= self.least(i))
+    }
+
+    /// Depth key: `floor(sum(E_i Z_i) / area)`, exact. Meaningful at covered
+    /// samples, where it lies between the corners' keys.
+    pub fn key(&self, edges: [i64; 3]) -> u32 {
+        let numerator: i128 = (0..3)
+            .map(|i| i128::from(edges[i]) * i128::from(self.corners[i][2]))
+            .sum();
+        let key = numerator.div_euclid(i128::from(self.area));
+        u32::try_from(key).expect("a convex combination of 31-bit keys")
+    }
+
+    /// Smallest value of edge function `i` at a covered sample: 0 on a top or left
+    /// edge, else 1. With y down and positive orientation, a left edge goes up and
+    /// a top edge goes right.
+    fn least(&self, i: usize) -> i64 {
+        let (a, b) = self.edge_ends(i);
+        let top_left = b[1] < a[1] || (b[1] == a[1] && b[0] > a[0]);
+        i64::from(!top_left)
+    }
+
+    /// Ends of the edge opposite corner `i`, in positive orientation.
+    fn edge_ends(&self, i: usize) -> ([i64; 3], [i64; 3]) {
+        (self.corners[(i + 1) % 3], self.corners[(i + 2) % 3])
+    }
+
+    /// Rows of the target whose samples may be covered.
+    pub fn rows(&self, size: Size, bits: u32) -> Span {
+        let y = self.corners.map(|c| c[1]);
+        let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+        first_sample(low, bits, size.height)..first_sample(high + 1, bits, size.height)
+    }
+
+    /// The covered columns of a row: a triangle is convex, so they are one span.
+    /// Each edge function is linear in the column, which gives a bound a piece.
+    pub fn span(&self, row: u32, size: Size, bits: u32) -> Span {
+        self.span_above([0, 1, 2].map(|i| self.least(i)), row, size, bits)
+    }
+
+    /// The columns of a row where edge function `i` is at least `least[i]`.
+    pub fn span_above(&self, least: [i64; 3], row: u32, size: Size, bits: u32) -> Span {
+        let origin = self.edges([sample(0, bits), sample(row, bits)]);
+        let (mut start, mut end) = (0, i64::from(size.width));
+        for i in 0..3 {
+            let (a, b) = self.edge_ends(i);
+            let step = (a[1] - b[1]) << bits; // change of E per column
+            let missing = least[i] - origin[i];
+            match step.signum() {
+                1 => start = start.max(div_ceil(missing, step)),
+                -1 => end = end.min((-missing).div_euclid(-step) + 1),
+                _ if missing > 0 => end = 0,
+                _ => {}
+            }
+        }
+        let end = end.max(0);
+        column(start.min(end))..column(end)
+    }
+}
+
+/// Stage `cover`: every fragment of every triangle, in order of triangle, row and
+/// column, with one sample in the middle of each pixel.
+pub fn cover(primitives: &Primitives, mut emit: impl FnMut(Fragment)) {
+    let (size, bits) = (primitives.size, primitives.bits);
+    for prim in 0..column(primitives.prims.len() as i64) {
+        let Some(setup) = Setup::new(primitives, prim) else {
+            continue;
+        };
+        for row in setup.rows(size, bits) {
+            for x in setup.span(row, size, bits) {
+                let edges = setup.edges([sample(x, bits), sample(row, bits)]);
+                debug_assert!(setup.covers(edges), "a span holds covered samples only");
+                let key = setup.key(edges);
+                emit(Fragment {
+                    pixel: row * size.width + x,
+                    prim,
+                    key,
+                    mask: 1,
+                });
+            }
+        }
+    }
+}
+
+/// Where the sample of a column (row) lies, in sub-pixels.
+pub fn sample(pixel: u32, bits: u32) -> i64 {
+    (i64::from(pixel) << bits) + (1 << (bits - 1))
+}
+
+/// Twice the signed area of `a`, `b`, `point`; positive on the right of the way
+/// from `a` to `b` with y down.
+fn edge(a: [i64; 3], b: [i64; 3], [x, y]: [i64; 2]) -> i64 {
+    (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
+}
+
+/// The first pixel whose sample lies at or after a coordinate, within the target.
+fn first_sample(coordinate: i64, bits: u32, side: u32) -> u32 {
+    let pixel = div_ceil(coordinate - (1 << (bits - 1)), 1 << bits);
+    column(pixel.clamp(0, i64::from(side)))
+}
+
+fn div_ceil(numerator: i64, denominator: i64) -> i64 {
+    -(-numerator).div_euclid(denominator)
+}
+
+/// A count or column as `u32`; callers have clamped it to a target's side or to
+/// the number of rows of a scene, both below 2^32.
+fn column(n: i64) -> u32 {
+    u32::try_from(n).expect("within the target")
+}
