@@ -1,6 +1,6 @@
 # shellcheck shell=sh disable=SC2154
 # Part of ./x: the native parts. Each setup_* looks for what the system has, gets it if there is
-# none, and says to cargo (flag, drivers, clang) and to doctor (part) where it is.
+# none, and says to cargo (load_from, drivers, clang) and to doctor (part) where it is.
 
 embreex=4.4.0.post1 # a PyPI wheel around Embree 4.4.0
 embreex_sha256=2cd0f7d5c6342e6247e31f700761689cae7829454d8c6de0c41e62124a023e1f
@@ -38,7 +38,7 @@ setup_embree() {
         rm -rf "$embree"
         mkdir "$embree"
         ln -s "$lib" "$embree/libembree4.so" # the linker asks for this name
-        flag "${lib%/*}"
+        load_from "${lib%/*}"
         say "Embree $version: $lib (this machine's own)"
     else
         embree=$native/embree-$embreex version=${embreex%.post*} origin=pypi:embreex-$embreex
@@ -50,7 +50,7 @@ setup_embree() {
             say "Embree $version: $embree (PyPI embreex $embreex)"
         fi
     fi
-    flag "$embree"
+    load_from "$embree"
     part embree "$version" "$origin" "$embree/libembree4.so"
 }
 
@@ -123,7 +123,7 @@ setup_vulkan() {
     fi
     if [ -e "$mesa/lvp_icd.json" ]; then
         for dir in "$mesa/usr/lib"/*-linux-gnu "$mesa/lib"/*-linux-gnu; do
-            [ ! -d "$dir" ] || flag "$dir"
+            [ ! -d "$dir" ] || load_from "$dir"
         done
         drivers=${drivers:+$drivers:}$mesa/lvp_icd.json
         part lavapipe "$(cat "$mesa/version")" deb:mesa-vulkan-drivers "$mesa/lvp_icd.json"
@@ -133,7 +133,7 @@ setup_vulkan() {
     if system_loader; then
         part vulkan-loader "$(debian_version libvulkan1)" "$loader" "$loader"
     else
-        flag "$swiftshader/loader"
+        load_from "$swiftshader/loader"
         part vulkan-loader "chromium-$chromium" npm:@sparticuz/chromium "$swiftshader/loader/libvulkan.so.1"
     fi
 }
