@@ -1,1 +1,14 @@
-//! Being written.
+//! Triptych's algorithms in WGSL with atomics, and the least host code that runs
+//! them.
+//!
+//! Baseline kernels keep to WebGPU's default limits and features. Each stage of
+//! the spec has an entry point of the same name; nothing here calls an algorithm of
+//! the spec, only its data types.
+
+pub mod abuffer;
+pub mod context;
+pub mod error;
+pub mod frame;
+pub mod kernel;
+pub mod raster;
+pub mod wgsl;

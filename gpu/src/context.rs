@@ -1,0 +1,267 @@
+//! Adapters, devices, buffers, and reading results back.
+
+use std::sync::{Arc, Mutex};
+
+use crate::error::GpuError;
+
+/// Which adapters a run is about.
+pub fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    let instance = wgpu::Instance::new(descriptor);
+    pollster::block_on(instance.enumerate_adapters(backends))
+}
+
+/// A short name for an adapter: its own, without the parenthesis and the word
+/// "Device" that some drivers append.
+pub fn short_name(info: &wgpu::AdapterInfo) -> String {
+    let name = info.name.split(" (").next().unwrap_or(&info.name);
+    let name = name.strip_suffix(" Device").unwrap_or(name).trim();
+    match info.backend {
+        wgpu::Backend::Gl => format!("{name}-gl"),
+        _ => name.to_owned(),
+    }
+}
+
+/// A device with what it needs to be asked and to be believed.
+pub struct Gpu {
+    /// Short name of the adapter.
+    pub name: String,
+    /// The adapter's own words.
+    pub info: wgpu::AdapterInfo,
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// The first thing that went wrong behind our back.
+    failure: Arc<Mutex<Option<GpuError>>>,
+}
+
+impl Gpu {
+    /// Opens a device with WebGPU's default limits, buffers as large as the adapter
+    /// allows, and 64-bit integers if it has them: whatever baseline kernels need
+    /// beyond the default is an error on every adapter, not only on small ones.
+    ///
+    /// # Errors
+    /// The driver's reason.
+    pub fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let name = short_name(&info);
+        let limits = wgpu::Limits {
+            max_buffer_size: adapter.limits().max_buffer_size,
+            max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,
+            ..wgpu::Limits::default()
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("triptych"),
+            required_features: adapter.features() & wgpu::Features::SHADER_INT64,
+            required_limits: limits,
+            ..Default::default()
+        };
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&descriptor)).map_err(|e| {
+                GpuError::NoDevice {
+                    adapter: name.clone(),
+                    reason: one_line(&e),
+                }
+            })?;
+        let failure = Arc::new(Mutex::new(None));
+        watch(&device, &name, &failure);
+        Ok(Self {
+            name,
+            info,
+            device,
+            queue,
+            failure,
+        })
+    }
+
+    /// Whether the adapter computes with 64-bit integers.
+    pub fn has_int64(&self) -> bool {
+        self.device
+            .features()
+            .contains(wgpu::Features::SHADER_INT64)
+    }
+
+    /// The largest buffer that a kernel can see, in bytes.
+    pub fn binding_limit(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+    }
+
+    /// A storage buffer of `bytes` zeros (at least one word).
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the adapter cannot bind so much.
+    pub fn storage(&self, what: &'static str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
+        let bytes = bytes.max(16);
+        self.check_binding(what, bytes)?;
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(what),
+            size: bytes,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// A storage buffer that holds `data`.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the adapter cannot bind so much.
+    pub fn upload<T: bytemuck::NoUninit>(
+        &self,
+        what: &'static str,
+        data: &[T],
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = self.storage(what, bytes.len() as u64)?;
+        self.queue.write_buffer(&buffer, 0, bytes);
+        Ok(buffer)
+    }
+
+    /// A storage buffer of `words` words with the same value.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`] if the adapter cannot bind so much.
+    pub fn filled(
+        &self,
+        what: &'static str,
+        words: u32,
+        value: u32,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        self.upload(what, &vec![value; words as usize])
+    }
+
+    /// Fails by name if a kernel cannot see `bytes` at once.
+    ///
+    /// # Errors
+    /// [`GpuError::Limit`].
+    pub fn check_binding(&self, what: &'static str, bytes: u64) -> Result<(), GpuError> {
+        let limit = self.binding_limit();
+        if bytes <= limit {
+            return Ok(());
+        }
+        Err(GpuError::Limit {
+            adapter: self.name.clone(),
+            what,
+            needed: bytes,
+            limit,
+        })
+    }
+
+    /// Runs what was recorded and waits for it.
+    ///
+    /// # Errors
+    /// Whatever the device reported meanwhile.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<(), GpuError> {
+        self.queue.submit([encoder.finish()]);
+        self.wait()
+    }
+
+    /// An encoder.
+    pub fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// The first `count` items of a buffer.
+    ///
+    /// # Errors
+    /// Whatever the device reported meanwhile.
+    pub fn read<T: bytemuck::Pod>(
+        &self,
+        buffer: &wgpu::Buffer,
+        count: usize,
+    ) -> Result<Vec<T>, GpuError> {
+        let bytes = (count * size_of::<T>()) as u64;
+        if bytes == 0 {
+            return Ok(Vec::new());
+        }
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("staging"),
+            size: bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.encoder();
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
+        self.queue.submit([encoder.finish()]);
+        staging.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        self.wait()?;
+        let view = staging
+            .slice(..)
+            .get_mapped_range()
+            .map_err(|e| self.refused(&e))?;
+        Ok(bytemuck::pod_collect_to_vec(&view))
+    }
+
+    /// Whatever has gone wrong so far.
+    ///
+    /// # Errors
+    /// The first failure.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let failure = self
+            .failure
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        failure.clone().map_or(Ok(()), Err)
+    }
+
+    fn wait(&self) -> Result<(), GpuError> {
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        polled.map(|_| ()).map_err(|e| self.refused(&e))
+    }
+
+    fn refused(&self, error: &dyn std::error::Error) -> GpuError {
+        GpuError::Refused {
+            adapter: self.name.clone(),
+            reason: one_line(error),
+        }
+    }
+}
+
+/// Keeps the first error and the loss of the device for [`Gpu::check`].
+fn watch(device: &wgpu::Device, name: &str, failure: &Arc<Mutex<Option<GpuError>>>) {
+    let keep = |slot: &Mutex<Option<GpuError>>, error: GpuError| {
+        let mut slot = slot
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        slot.get_or_insert(error);
+    };
+    let (slot, adapter) = (failure.clone(), name.to_owned());
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        keep(
+            &slot,
+            GpuError::Refused {
+                adapter: adapter.clone(),
+                reason: one_line(&error),
+            },
+        );
+    }));
+    let (slot, adapter) = (failure.clone(), name.to_owned());
+    device.set_device_lost_callback(move |reason, message| {
+        // Dropping the device is not a loss.
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            keep(
+                &slot,
+                GpuError::Lost {
+                    adapter: adapter.clone(),
+                    reason: message,
+                },
+            );
+        }
+    });
+}
+
+fn one_line(error: &dyn std::error::Error) -> String {
+    error
+        .to_string()
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+}

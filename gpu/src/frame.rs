@@ -1,0 +1,96 @@
+//! What every kernel of a frame is told. Twin: `Frame` in `frame.wgsl`; a test
+//! holds the two layouts together.
+
+use bytemuck::{Pod, Zeroable};
+use triptych_spec::scene::Size;
+use triptych_spec::vertex::guard_origin;
+
+/// Invocations per workgroup, one dimension.
+pub const WORKGROUP: u32 = 64;
+
+/// The uniform block.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Frame {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows of the target.
+    pub height: u32,
+    /// Sub-pixel bits.
+    pub bits: u32,
+    /// Nodes (or stream entries) that there is room for.
+    pub capacity: u32,
+    /// First row of the band.
+    pub first_row: u32,
+    /// Rows in the band.
+    pub rows: u32,
+    /// First entry of the batch in the work list.
+    pub work_first: u32,
+    /// Entries of the batch.
+    pub work_count: u32,
+    /// Rows of triangles in the batch: invocations of a compute kernel.
+    pub items: u32,
+    /// First column of the guard rectangle.
+    pub guard_x: i32,
+    /// First row of the guard rectangle.
+    pub guard_y: i32,
+    /// 0 keeps fragments behind opaque surfaces.
+    pub depth_test: u32,
+    /// Linear background colour.
+    pub background: [f32; 4],
+}
+
+/// A run of rows that is rendered at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Band {
+    /// First row.
+    pub first: u32,
+    /// Number of rows, at least 1.
+    pub rows: u32,
+}
+
+impl Band {
+    /// The whole target.
+    pub fn whole(size: Size) -> Self {
+        Self {
+            first: 0,
+            rows: size.height,
+        }
+    }
+
+    /// The two halves of a band of two rows or more.
+    pub fn halves(self) -> Option<[Self; 2]> {
+        let upper = self.rows / 2;
+        (upper > 0).then_some([
+            Self {
+                first: self.first,
+                rows: upper,
+            },
+            Self {
+                first: self.first + upper,
+                rows: self.rows - upper,
+            },
+        ])
+    }
+
+    /// Number of pixels.
+    pub fn pixels(self, size: Size) -> u32 {
+        self.rows * size.width
+    }
+}
+
+impl Frame {
+    /// A band of a target, without work.
+    pub fn new(size: Size, bits: u32, band: Band) -> Self {
+        Self {
+            width: size.width,
+            height: size.height,
+            bits,
+            first_row: band.first,
+            rows: band.rows,
+            guard_x: guard_origin(size.width),
+            guard_y: guard_origin(size.height),
+            ..Self::default()
+        }
+    }
+}

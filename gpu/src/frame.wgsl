@@ -1,0 +1,29 @@
+// What every kernel of a frame is told. Twin: `Frame` in frame.rs.
+
+struct Frame {
+    width: u32,         // of the target, pixels
+    height: u32,
+    bits: u32,          // of the sub-pixel grid
+    capacity: u32,      // nodes
+    first_row: u32,     // of the band
+    rows: u32,          // in the band
+    work_first: u32,    // of the batch, in `work`
+    work_count: u32,
+    items: u32,         // rows of triangles in the batch
+    guard_x: i32,       // first column of the guard rectangle, pixels
+    guard_y: i32,
+    depth_test: u32,    // 0: fragments behind opaque surfaces are kept
+    background: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+// Workgroups are laid out in one dimension.
+const WORKGROUP: u32 = 64u;
+
+// Side of the guard rectangle, pixels.
+const GUARD: i32 = 4096;
+
+fn band_pixels() -> u32 {
+    return frame.width * frame.rows;
+}

@@ -1,0 +1,36 @@
+// Raster stage: every covered pixel of every triangle, as a stream, on two paths.
+//
+// Compute: one invocation walks one row of one triangle. Fragment: the hardware
+// rasterises the same snapped triangles, the shader evaluates only the key.
+// Twin: spec/src/raster.rs.
+
+//#import counter
+//#import place
+//#import walk
+
+// Covered pixels, in no particular order.
+@group(0) @binding(6) var<storage, read_write> stream: array<Fragment>;
+
+fn append(fragment: Fragment) {
+    let address = claim();
+    if address < frame.capacity {
+        stream[address] = fragment;
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn cover(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= frame.items {
+        return;
+    }
+    var walk = start(id.x);
+    while advance(&walk) {
+        append(walk.fragment);
+    }
+}
+
+@fragment
+fn cover_fragment(placed: Placed) {
+    let pixel = vec2<u32>(placed.position.xy);
+    append(fragment_at(placed.prim, pixel.x, pixel.y));
+}

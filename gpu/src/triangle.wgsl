@@ -1,0 +1,116 @@
+// A triangle on the integer grid: edge functions, the top-left rule, depth keys.
+// Twin: `Setup` in spec/src/raster.rs.
+
+//#import frame
+//#import wide
+
+// Nine numbers a triangle: x, y in sub-pixels and the depth key of each corner.
+@group(0) @binding(1) var<storage, read> corners: array<i32>;
+
+// The triangles to draw: x is a triangle, y the rows of all triangles of the
+// batch that come before it.
+@group(0) @binding(2) var<storage, read> work: array<vec2<u32>>;
+
+// Colour and opacity of each triangle.
+@group(0) @binding(3) var<storage, read> faces: array<vec4<f32>>;
+
+// One covered pixel of one triangle.
+struct Fragment {
+    pixel: u32,     // within the band, row-major
+    prim: u32,
+    key: u32,
+    mask: u32,
+}
+
+struct Setup {
+    a: vec3<i32>,
+    b: vec3<i32>,
+    c: vec3<i32>,
+    area: Wide,     // twice the area, positive unless the triangle is empty
+    empty: bool,
+}
+
+fn corner(prim: u32, i: u32) -> vec3<i32> {
+    let at = 9u * prim + 3u * i;
+    return vec3(corners[at], corners[at + 1u], corners[at + 2u]);
+}
+
+// Twice the signed area of a, b, point.
+fn edge(a: vec3<i32>, b: vec3<i32>, point: vec2<i32>) -> Wide {
+    return wide_sub(
+        wide_mul(b.x - a.x, point.y - a.y),
+        wide_mul(b.y - a.y, point.x - a.x),
+    );
+}
+
+// Corners in positive orientation.
+fn prepare(prim: u32) -> Setup {
+    let a = corner(prim, 0u);
+    let b = corner(prim, 1u);
+    let c = corner(prim, 2u);
+    let area = edge(a, b, c.xy);
+    if wide_negative(area) {
+        return Setup(a, c, b, wide_sub(wide(0), area), false);
+    }
+    return Setup(a, b, c, area, wide_is_zero(area));
+}
+
+// 0 on a top or left edge, else 1: the smallest edge value of a covered sample.
+fn least(a: vec3<i32>, b: vec3<i32>) -> i32 {
+    let top_left = b.y < a.y || (b.y == a.y && b.x > a.x);
+    return select(1, 0, top_left);
+}
+
+fn sample_at(pixel: u32) -> i32 {
+    return i32(pixel << frame.bits) + i32(1u << (frame.bits - 1u));
+}
+
+// A depth key and what the division left over.
+struct Depth {
+    key: u32,
+    rest: Wide,
+}
+
+// floor(sum(E_i Z_i) / area) for E_i >= 0 with sum(E_i) = area.
+//
+// The numerator has up to 72 bits, but residuals are small, so 64 suffice. With
+// U = 2^-23: the numerator in f32 is off by at most 6 U (conversions 2 + 1,
+// product 1, sums 2), the area by 2 U, the quotient by 2.5 U, the product with
+// LOWER by 1 U: together under 2^-19.4, less than the 2^-19 that LOWER takes off.
+// An estimate is therefore never too large, and too small by at most
+// q (2^-19 + 2^-19.4) + 1: after the first, whose q is below 2^31, the residual is
+// under 2^13 areas (54 bits); after the second it is under 1.03; one subtraction
+// remains.
+const LOWER: f32 = 1.0 - 1.0 / 524288.0;
+
+fn depth_key(s: Setup, ea: Wide, eb: Wide, ec: Wide) -> Depth {
+    let za = u32(s.a.z);
+    let zb = u32(s.b.z);
+    let zc = u32(s.c.z);
+    let area = wide_to_f32(s.area);
+    let numerator = wide_to_f32(ea) * f32(za) + wide_to_f32(eb) * f32(zb) + wide_to_f32(ec) * f32(zc);
+    var rest = wide_add(wide_add(wide_scale(ea, za), wide_scale(eb, zb)), wide_scale(ec, zc));
+    let first = u32(numerator / area * LOWER);
+    rest = wide_sub(rest, wide_scale(s.area, first));
+    let second = u32(wide_to_f32(rest) / area * LOWER);
+    rest = wide_sub(rest, wide_scale(s.area, second));
+    if wide_less(rest, s.area) {
+        return Depth(first + second, rest);
+    }
+    return Depth(first + second + 1u, wide_sub(rest, s.area));
+}
+
+// The fragment of `prim` at a pixel that the hardware says is covered.
+fn fragment_at(prim: u32, x: u32, y: u32) -> Fragment {
+    let s = prepare(prim);
+    let point = vec2(sample_at(x), sample_at(y));
+    let ea = edge(s.b, s.c, point);
+    let eb = edge(s.c, s.a, point);
+    let ec = edge(s.a, s.b, point);
+    let pixel = (y - frame.first_row) * frame.width + x;
+    // Outside the triangle a key means nothing; the comparison reports coverage.
+    if s.empty || wide_negative(ea) || wide_negative(eb) || wide_negative(ec) {
+        return Fragment(pixel, prim, u32(s.a.z), 1u);
+    }
+    return Fragment(pixel, prim, depth_key(s, ea, eb, ec).key, 1u);
+}

@@ -1,0 +1,209 @@
+//! A small linker for WGSL: `//#import name` is replaced, once, by the file of
+//! that name, and every line of the result remembers where it came from.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use naga::front::wgsl;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+/// WGSL that does not link, parse or validate.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {message}")]
+pub struct WgslError {
+    /// File name.
+    pub file: String,
+    /// Line from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// The WGSL files by name, without their ending.
+#[derive(Clone, Debug)]
+pub struct Sources(BTreeMap<&'static str, Cow<'static, str>>);
+
+/// A linked text and the origin of each line.
+#[derive(Clone, Debug)]
+pub struct Linked {
+    /// The whole program.
+    pub text: String,
+    origins: Vec<(String, usize)>,
+}
+
+/// A linked program that parsed and validated.
+pub struct Program {
+    /// The linked text.
+    pub linked: Linked,
+    /// Its IR.
+    pub module: naga::Module,
+    /// What validation found out about it.
+    pub info: ModuleInfo,
+}
+
+macro_rules! shipped {
+    ($($name:literal),* $(,)?) => {
+        BTreeMap::from([$(($name, Cow::Borrowed(include_str!(concat!($name, ".wgsl"))))),*])
+    };
+}
+
+impl Sources {
+    /// The files as they ship. `native` takes 64-bit integers from the adapter
+    /// (`SHADER_INT64`) in place of pairs of words.
+    pub fn shipped(native: bool) -> Self {
+        let mut files = shipped!(
+            "abuffer",
+            "counter",
+            "frame",
+            "place",
+            "raster",
+            "triangle",
+            "walk",
+            "wide",
+            "wide_native",
+        );
+        let native_wide = files.remove("wide_native");
+        if let (true, Some(text)) = (native, native_wide) {
+            files.insert("wide", text);
+        }
+        Self(files)
+    }
+
+    /// A copy with one defect: `find`, which must occur exactly once in `file`,
+    /// replaced.
+    ///
+    /// # Errors
+    /// The file is unknown, or `find` does not occur exactly once.
+    pub fn patched(&self, file: &str, find: &str, replace: &str) -> Result<Self, WgslError> {
+        let fail = |message: String| WgslError {
+            file: format!("{file}.wgsl"),
+            line: 1,
+            message,
+        };
+        let mut files = self.0.clone();
+        let text = files
+            .get_mut(file)
+            .ok_or_else(|| fail("no such file".into()))?;
+        match text.matches(find).count() {
+            1 => *text = Cow::Owned(text.replacen(find, replace, 1)),
+            n => {
+                return Err(fail(format!(
+                    "the text to replace occurs {n} times: {find}"
+                )));
+            }
+        }
+        Ok(Self(files))
+    }
+
+    /// Links `root` with everything that it imports.
+    ///
+    /// # Errors
+    /// An import that names no file, with its place.
+    pub fn link(&self, root: &str) -> Result<Linked, WgslError> {
+        let mut linked = Linked {
+            text: String::new(),
+            origins: Vec::new(),
+        };
+        self.append(root, &mut BTreeSet::new(), &mut linked, ("", 1))?;
+        Ok(linked)
+    }
+
+    fn append<'s>(
+        &'s self,
+        name: &'s str,
+        seen: &mut BTreeSet<&'s str>,
+        linked: &mut Linked,
+        from: (&str, usize),
+    ) -> Result<(), WgslError> {
+        if !seen.insert(name) {
+            return Ok(());
+        }
+        let text = self.0.get(name).ok_or_else(|| WgslError {
+            file: format!("{}.wgsl", from.0),
+            line: from.1,
+            message: format!("import of an unknown file: {name}"),
+        })?;
+        for (number, line) in (1..).zip(text.lines()) {
+            if let Some(import) = line.strip_prefix("//#import ") {
+                self.append(import.trim(), seen, linked, (name, number))?;
+            } else {
+                linked.text.push_str(line);
+                linked.text.push('\n');
+                linked.origins.push((format!("{name}.wgsl"), number));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Linked {
+    /// Parses and validates, with errors at their file and line.
+    ///
+    /// # Errors
+    /// The first thing that naga refuses.
+    pub fn parse(self) -> Result<Program, WgslError> {
+        let module = wgsl::parse_str(&self.text).map_err(|e| {
+            let line = e.location(&self.text).map_or(1, |l| l.line_number);
+            self.error(line, e.message())
+        })?;
+        let capabilities = Capabilities::default() | Capabilities::SHADER_INT64;
+        let info = Validator::new(ValidationFlags::all(), capabilities)
+            .validate(&module)
+            .map_err(|e| {
+                let line = e.location(&self.text).map_or(1, |l| l.line_number);
+                self.error(line, &chain(e.as_inner()))
+            })?;
+        Ok(Program {
+            linked: self,
+            module,
+            info,
+        })
+    }
+
+    fn error(&self, line: u32, message: &str) -> WgslError {
+        let (file, line) = self
+            .origins
+            .get((line as usize).saturating_sub(1))
+            .cloned()
+            .unwrap_or_else(|| ("?".into(), 1));
+        WgslError {
+            file,
+            line,
+            message: message.into(),
+        }
+    }
+}
+
+impl Program {
+    /// The resource variables that an entry point uses: name and binding, in order
+    /// of binding. `None` if there is no such entry point.
+    pub fn bindings(&self, entry: &str) -> Option<Vec<(String, u32)>> {
+        let index = self
+            .module
+            .entry_points
+            .iter()
+            .position(|e| e.name == entry)?;
+        let used = self.info.get_entry_point(index);
+        let mut bindings: Vec<(String, u32)> = self
+            .module
+            .global_variables
+            .iter()
+            .filter(|(handle, _)| !used[*handle].is_empty())
+            .filter_map(|(_, v)| Some((v.name.clone()?, v.binding.as_ref()?.binding)))
+            .collect();
+        bindings.sort_by_key(|b| b.1);
+        Some(bindings)
+    }
+}
+
+/// An error with all its sources, on one line.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(e) = source {
+        text.push_str(": ");
+        text.push_str(&e.to_string());
+        source = e.source();
+    }
+    text
+}

@@ -1,0 +1,52 @@
+// 64-bit integers where the adapter has them (SHADER_INT64). Twin: wide.wgsl.
+
+alias Wide = i64;
+
+fn wide(value: i32) -> Wide {
+    return i64(value);
+}
+
+fn wide_from(value: u32) -> Wide {
+    return i64(value);
+}
+
+fn wide_add(a: Wide, b: Wide) -> Wide {
+    return a + b;
+}
+
+fn wide_sub(a: Wide, b: Wide) -> Wide {
+    return a - b;
+}
+
+fn wide_negative(a: Wide) -> bool {
+    return a < 0li;
+}
+
+// Both not negative.
+fn wide_less(a: Wide, b: Wide) -> bool {
+    return a < b;
+}
+
+fn wide_is_zero(a: Wide) -> bool {
+    return a == 0li;
+}
+
+// The exact product of two signed words.
+fn wide_mul(a: i32, b: i32) -> Wide {
+    return i64(a) * i64(b);
+}
+
+// a * b modulo 2^64.
+fn wide_scale(a: Wide, b: u32) -> Wide {
+    return a * i64(b);
+}
+
+// a * 2^bits, bits in 1..31.
+fn wide_shift(a: Wide, bits: u32) -> Wide {
+    return a << bits;
+}
+
+// Not negative; relative error at most 2 units.
+fn wide_to_f32(a: Wide) -> f32 {
+    return f32(a);
+}
