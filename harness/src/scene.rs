@@ -1,0 +1,185 @@
+//! Scenes: from scene.toml or a bare mesh to what every leg is given.
+
+pub mod expect;
+pub mod file;
+mod fit;
+mod flatten;
+mod shade;
+mod source;
+pub mod value;
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+use triptych_spec::scene::Scene;
+
+use crate::corpus::{self, Entry};
+use crate::error::InputError;
+use file::SceneFile;
+
+/// Largest scene.toml in bytes.
+pub const FILE_MAX: u64 = 1 << 22;
+
+/// What a bare mesh is shown as.
+const BARE: &str = r#"
+purpose = "a mesh by itself, seen whole"
+size = [512, 512]
+mesh = []
+"#;
+
+/// A scene, ready for the legs.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// `family/case`.
+    pub name: String,
+    /// `raster` or `abuffer`.
+    pub family: String,
+    /// The scene as written.
+    pub file: SceneFile,
+    /// The scene as the legs see it.
+    pub scene: Scene,
+    /// What was loaded.
+    pub stats: Stats,
+}
+
+/// What loading saw.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Triangles over all meshes and instances.
+    pub triangles: u64,
+    /// Of these, without area in object space.
+    pub degenerate: u64,
+    /// The meshes in order.
+    pub meshes: Vec<MeshStats>,
+    /// SHA-256 of everything that was read: scene, meshes, material libraries,
+    /// seed. Generators are code and not part of it.
+    pub sha256: String,
+}
+
+/// What loading saw of one mesh.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct MeshStats {
+    /// `file shape.obj`, `package bunny.obj` or `generate stack`.
+    pub source: String,
+    /// SHA-256 of the mesh file as it lies on disk; `None` for a generator.
+    pub sha256: Option<String>,
+    /// Triangles of one instance.
+    pub triangles: u64,
+    /// Number of instances.
+    pub instances: u64,
+    /// Triangles of one instance without area.
+    pub degenerate: u64,
+    /// What the file holds beside triangles, and remarks.
+    pub notes: crate::mesh::Notes,
+}
+
+/// Why a scene is not loaded.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LoadError {
+    /// Something is wrong with a file.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A package's mesh is not there: the scene is to be skipped and counted.
+    #[error("mesh {mesh} is not there; `{command}` installs it")]
+    Missing {
+        /// Its name in corpus/meshes.lock.
+        mesh: String,
+        /// What installs it.
+        command: &'static str,
+    },
+}
+
+/// Loads a scene.toml or a bare mesh as a scene outside the corpus.
+///
+/// # Errors
+/// See [`LoadError`].
+pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    let entry = Entry {
+        name: corpus::name_outside(path),
+        family: "abuffer".to_owned(),
+        path: path.to_owned(),
+    };
+    load_entry(&entry, None)
+}
+
+/// Loads a scene; `seed` takes the place of the scene's own.
+///
+/// # Errors
+/// See [`LoadError`].
+pub fn load_entry(entry: &Entry, seed: Option<u64>) -> Result<Loaded, LoadError> {
+    let path = &entry.path;
+    let mut digest = Sha256::new();
+    let mut parsed = if corpus::is_mesh(path) {
+        let mut parsed = parse(path, BARE)?;
+        parsed.file.mesh = vec![source::bare(path)];
+        parsed
+    } else {
+        let bytes = crate::mesh::read(path, FILE_MAX)?;
+        digest.update(&bytes);
+        parse(path, utf8(path, &bytes)?)?
+    };
+    if let Some(seed) = seed {
+        parsed.file.seed = seed;
+    }
+    digest.update(parsed.file.seed.to_le_bytes());
+    let meshes = source::load_all(&parsed, &mut digest)?;
+    let scene = flatten::flatten(&parsed, &meshes)?;
+    let mut stats = source::stats(&meshes);
+    stats.sha256 = source::hex(&digest.finalize());
+    Ok(Loaded {
+        name: entry.name.clone(),
+        family: entry.family.clone(),
+        file: parsed.file,
+        scene,
+        stats,
+    })
+}
+
+/// A scene file with what is needed to point at its lines.
+struct Parsed<'a> {
+    path: &'a Path,
+    /// Byte offset of the start of every line.
+    lines: Vec<usize>,
+    file: SceneFile,
+}
+
+impl Parsed<'_> {
+    /// An error at a place of the scene file. A bare mesh has no such places.
+    fn error(&self, span: std::ops::Range<usize>, message: impl Into<String>) -> InputError {
+        if corpus::is_mesh(self.path) {
+            return InputError::new(self.path, message);
+        }
+        InputError::at(self.path, line_of(&self.lines, span.start), message)
+    }
+}
+
+fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
+    let starts = text.match_indices('\n').map(|(at, _)| at + 1);
+    let lines: Vec<usize> = std::iter::once(0).chain(starts).collect();
+    let file = toml::from_str(text).map_err(|e| {
+        let line = e.span().map(|span| line_of(&lines, span.start));
+        InputError {
+            file: path.to_owned(),
+            line,
+            message: e.message().to_owned(),
+        }
+    })?;
+    Ok(Parsed { path, lines, file })
+}
+
+/// The line, from 1, that holds a byte.
+fn line_of(lines: &[usize], at: usize) -> usize {
+    lines.partition_point(|start| *start <= at)
+}
+
+fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, InputError> {
+    // A byte-order mark means nothing in UTF-8.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|e| {
+        let line = 1 + bytes[..e.valid_up_to()]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count();
+        InputError::at(path, line, "is not UTF-8; a scene.toml is expected")
+    })
+}

@@ -1,0 +1,250 @@
+//! scene.toml as written: strict, every key documented here.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::expect::Expect;
+use super::value::{Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share};
+use crate::generate::Generator;
+
+/// A scene.toml.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// What the scene is for, in one sentence.
+    pub purpose: Sentence,
+    /// Seed of whatever the scene draws at random.
+    #[serde(default)]
+    pub seed: u64,
+    /// Width and height in pixels.
+    pub size: ImageSize,
+    /// Linear colour behind everything; black if left out.
+    #[serde(default)]
+    pub background: Colour,
+    /// Left out: a perspective view of everything.
+    pub camera: Option<Spanned<CameraEntry>>,
+    /// Left out: [`SceneFile::default_lights`].
+    #[serde(default = "SceneFile::default_lights")]
+    pub light: Vec<Light>,
+    /// What meshes are made of.
+    #[serde(default)]
+    pub material: Vec<MaterialEntry>,
+    /// The geometry. `mesh = []` says that a scene is empty on purpose.
+    pub mesh: Vec<Spanned<MeshEntry>>,
+    /// Options of the A-buffer.
+    #[serde(default)]
+    pub abuffer: Abuffer,
+    /// Shares of what may go unjudged.
+    #[serde(default)]
+    pub budget: Budget,
+    /// Closed-form answers.
+    #[serde(default)]
+    pub expect: Expect,
+}
+
+impl SceneFile {
+    /// Dim light from everywhere and a stronger one from above, behind the
+    /// default camera's right shoulder.
+    pub fn default_lights() -> Vec<Light> {
+        vec![
+            Light::Ambient {
+                intensity: Colour([0.3; 3]),
+            },
+            Light::Directional {
+                direction: Direction([-0.6, -1.0, -0.8]),
+                intensity: Colour([0.7; 3]),
+            },
+        ]
+    }
+}
+
+/// A camera: `fov` makes it a perspective, `height` orthographic.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraEntry {
+    /// Position.
+    pub eye: Point,
+    /// Point in the middle of the picture.
+    pub target: Point,
+    /// Upward, not parallel to the view; y if left out.
+    #[serde(default = "CameraEntry::y")]
+    pub up: Direction,
+    /// Full vertical angle in degrees.
+    pub fov: Option<Number>,
+    /// World units from the bottom of the picture to its top.
+    pub height: Option<Number>,
+    /// Distance at which depth is 0.
+    pub near: Number,
+    /// Distance at which depth is 1.
+    pub far: Number,
+}
+
+impl CameraEntry {
+    fn y() -> Direction {
+        Direction([0.0, 1.0, 0.0])
+    }
+}
+
+/// A light. Intensities are radiances that a white Lambertian face reflects where
+/// the light strikes it head-on: irradiance over pi.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Light {
+    /// The same on every face.
+    Ambient {
+        /// Radiance.
+        intensity: Colour,
+    },
+    /// Parallel light.
+    Directional {
+        /// The way the light travels; any length.
+        direction: Direction,
+        /// Radiance.
+        intensity: Colour,
+    },
+    /// Light from a point; falls off with the square of the distance.
+    Point {
+        /// Where it is.
+        position: Point,
+        /// Radiance at distance 1.
+        intensity: Colour,
+    },
+}
+
+/// A material.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialEntry {
+    /// What meshes call it by.
+    pub name: Spanned<String>,
+    /// Linear reflectance.
+    pub colour: Colour,
+    /// 1 is opaque, 0 invisible (but still in the lists).
+    pub opacity: Share,
+}
+
+/// A mesh and where it stands. Exactly one of `file`, `package` and `generate`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshEntry {
+    /// A mesh file, relative to the scene.
+    pub file: Option<String>,
+    /// A row of corpus/meshes.lock.
+    pub package: Option<Spanned<String>>,
+    /// A generator and its parameters.
+    pub generate: Option<Spanned<Generator>>,
+    /// How strands of hair become triangles; for a `.bin.gz` only.
+    pub hair: Option<Hair>,
+    /// Overrides every material of the mesh.
+    pub material: Option<Spanned<String>>,
+    /// Overrides single materials of the mesh, by the mesh's names.
+    #[serde(default)]
+    pub materials: BTreeMap<Spanned<String>, Spanned<String>>,
+    /// Factor, applied first.
+    #[serde(default)]
+    pub scale: Scale,
+    /// Degrees about x, then y, then z, applied second.
+    #[serde(default)]
+    pub rotate: Point,
+    /// Offset, applied last.
+    #[serde(default)]
+    pub translate: Point,
+    /// Copies, each placed by its own transform after the mesh's.
+    #[serde(default = "MeshEntry::once")]
+    pub instances: Vec<Transform>,
+}
+
+impl Default for MeshEntry {
+    fn default() -> Self {
+        Self {
+            file: None,
+            package: None,
+            generate: None,
+            hair: None,
+            material: None,
+            materials: BTreeMap::new(),
+            scale: Scale::default(),
+            rotate: Point::default(),
+            translate: Point::default(),
+            instances: Self::once(),
+        }
+    }
+}
+
+impl MeshEntry {
+    fn once() -> Vec<Transform> {
+        vec![Transform::default()]
+    }
+}
+
+/// A placement: scale, rotate, translate, in this order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Transform {
+    /// Factor.
+    #[serde(default)]
+    pub scale: Scale,
+    /// Degrees about x, then y, then z.
+    #[serde(default)]
+    pub rotate: Point,
+    /// Offset.
+    #[serde(default)]
+    pub translate: Point,
+}
+
+/// Which strands of hair become prisms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hair {
+    /// Every how manieth strand is kept.
+    #[serde(default = "Hair::every")]
+    pub stride: std::num::NonZeroU32,
+}
+
+impl Hair {
+    fn every() -> std::num::NonZeroU32 {
+        std::num::NonZeroU32::MIN
+    }
+}
+
+impl Default for Hair {
+    fn default() -> Self {
+        Self {
+            stride: Self::every(),
+        }
+    }
+}
+
+/// Options of the A-buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Abuffer {
+    /// Nodes of the first attempt; fewer than needed makes it overflow.
+    #[serde(default)]
+    pub capacity: Capacity,
+}
+
+/// Shares of what may go unjudged.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Budget {
+    /// Pairs of ray and triangle too close to an edge for Embree's vote.
+    #[serde(default = "Budget::default_edge")]
+    pub edge: Share,
+}
+
+impl Budget {
+    fn default_edge() -> Share {
+        Share(0.001)
+    }
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self {
+            edge: Self::default_edge(),
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Where a scene's meshes come from: files, packages, generators.
+
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+use toml::Spanned;
+
+use super::file::MeshEntry;
+use super::{LoadError, MeshStats, Parsed, Stats};
+use crate::corpus;
+use crate::error::InputError;
+use crate::mesh::{self, Mesh};
+
+/// What installs the meshes of packages.
+const INSTALL: &str = "./x setup";
+
+/// A mesh and how it was had.
+pub(super) struct Source {
+    pub(super) mesh: Mesh,
+    pub(super) stats: MeshStats,
+}
+
+/// The one mesh of a scene that is a bare file.
+pub(super) fn bare(path: &Path) -> Spanned<MeshEntry> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let entry = MeshEntry {
+        file: Some(name.into_owned()),
+        ..MeshEntry::default()
+    };
+    Spanned::new(0..0, entry)
+}
+
+/// Loads every mesh of a scene, in order, and adds what was read to the digest.
+pub(super) fn load_all(parsed: &Parsed, digest: &mut Sha256) -> Result<Vec<Source>, LoadError> {
+    let load = |(number, entry)| load_one(parsed, number, entry, digest);
+    (0_u64..).zip(&parsed.file.mesh).map(load).collect()
+}
+
+fn load_one(
+    parsed: &Parsed,
+    number: u64,
+    entry: &Spanned<MeshEntry>,
+    digest: &mut Sha256,
+) -> Result<Source, LoadError> {
+    let e = entry.get_ref();
+    match (&e.file, &e.package, &e.generate) {
+        (Some(file), None, None) => {
+            let folder = parsed.path.parent().unwrap_or(Path::new(""));
+            let path = if corpus::is_mesh(parsed.path) {
+                parsed.path.to_owned() // keeps names that are not UTF-8
+            } else {
+                folder.join(file)
+            };
+            load_file(parsed, entry, &path, format!("file {file}"), digest)
+        }
+        (None, Some(package), None) => {
+            let (path, pinned) = find_package(parsed, package)?;
+            let name = package.get_ref();
+            let source = load_file(parsed, entry, &path, format!("package {name}"), digest)?;
+            if source.stats.sha256.as_deref() != Some(&pinned) {
+                let found = source.stats.sha256.unwrap_or_default();
+                let message = format!(
+                    "has sha256 {found}, not {pinned} of corpus/meshes.lock; run {INSTALL}"
+                );
+                return Err(InputError::new(path, message).into());
+            }
+            Ok(source)
+        }
+        (None, None, Some(generator)) => {
+            if let (Some(_), message) = (e.hair, "hair is for a .bin.gz of strands only") {
+                return Err(parsed.error(entry.span(), message).into());
+            }
+            // Meshes of one scene get different sequences.
+            let seed = parsed.file.seed.wrapping_mul(1 << 16).wrapping_add(number);
+            let mesh = generator
+                .get_ref()
+                .mesh(seed)
+                .map_err(|message| parsed.error(generator.span(), message))?;
+            Ok(Source::new(
+                format!("generate {}", generator.get_ref().name()),
+                None,
+                mesh,
+                e,
+            ))
+        }
+        _ => {
+            let message = "a mesh needs exactly one of file, package and generate";
+            Err(parsed.error(entry.span(), message).into())
+        }
+    }
+}
+
+fn load_file(
+    parsed: &Parsed,
+    entry: &Spanned<MeshEntry>,
+    path: &Path,
+    source: String,
+    digest: &mut Sha256,
+) -> Result<Source, LoadError> {
+    let bytes = mesh::read(path, mesh::BYTES_MAX)?;
+    let sha256 = hex(&Sha256::digest(&bytes));
+    digest.update(sha256.as_bytes());
+    let strands = path.to_string_lossy().ends_with(".bin.gz");
+    let mesh = match (strands, entry.get_ref().hair) {
+        (true, hair) => mesh::load_hair(path, &bytes, hair.unwrap_or_default().stride)?,
+        (false, None) => mesh::load(path, &bytes)?,
+        (false, Some(_)) => {
+            let message = "hair is for a .bin.gz of strands only";
+            return Err(parsed.error(entry.span(), message).into());
+        }
+    };
+    for named in &mesh.materials {
+        digest.update(format!("{named:?}"));
+    }
+    Ok(Source::new(source, Some(sha256), mesh, entry.get_ref()))
+}
+
+impl Source {
+    fn new(source: String, sha256: Option<String>, mesh: Mesh, entry: &MeshEntry) -> Self {
+        let stats = MeshStats {
+            source,
+            sha256,
+            triangles: mesh.triangles.len() as u64,
+            instances: entry.instances.len() as u64,
+            degenerate: mesh.degenerate(),
+            notes: mesh.notes.clone(),
+        };
+        Self { mesh, stats }
+    }
+}
+
+/// Where a package's mesh lies, and the hash that its row pins.
+fn find_package(
+    parsed: &Parsed,
+    package: &Spanned<String>,
+) -> Result<(PathBuf, String), LoadError> {
+    let lock = corpus::root().join("meshes.lock");
+    let bytes = mesh::read(&lock, super::FILE_MAX)?;
+    let text = super::utf8(&lock, &bytes)?;
+    let rows = text.lines().filter(|l| !l.starts_with('#'));
+    let rows: Vec<Vec<&str>> = rows.map(|l| l.split_whitespace().collect()).collect();
+    let name = package.get_ref().as_str();
+    let Some(row) = rows.iter().find(|r| r.first() == Some(&name)) else {
+        let known: Vec<&str> = rows.iter().filter_map(|r| r.first().copied()).collect();
+        let message = format!(
+            "`{name}` is not in corpus/meshes.lock, which has {}",
+            known.join(", ")
+        );
+        return Err(parsed.error(package.span(), message).into());
+    };
+    let path = corpus::meshes().join(name);
+    if !path.exists() {
+        return Err(LoadError::Missing {
+            mesh: name.to_owned(),
+            command: INSTALL,
+        });
+    }
+    let pinned = row.last().copied().unwrap_or_default();
+    Ok((path, pinned.to_owned()))
+}
+
+/// Sums over the meshes.
+pub(super) fn stats(meshes: &[Source]) -> Stats {
+    let total = |count: fn(&MeshStats) -> u64| {
+        let counts = meshes.iter().map(|m| count(&m.stats) * m.stats.instances);
+        counts.sum()
+    };
+    Stats {
+        triangles: total(|m| m.triangles),
+        degenerate: total(|m| m.degenerate),
+        meshes: meshes.iter().map(|m| m.stats.clone()).collect(),
+        sha256: String::new(),
+    }
+}
+
+/// Bytes as lower-case hexadecimal digits.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
