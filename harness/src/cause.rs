@@ -45,6 +45,28 @@ pub enum Cause {
 }
 
 impl Cause {
+    /// Every cause, in order.
+    pub const ALL: [Self; 18] = [
+        Self::Vertex,
+        Self::Coverage,
+        Self::Duplicate,
+        Self::LostNode,
+        Self::CorruptLink,
+        Self::Cycle,
+        Self::Overflow,
+        Self::DepthKey,
+        Self::SortOrder,
+        Self::TieOrder,
+        Self::Interval,
+        Self::BlendRounding,
+        Self::SampleMask,
+        Self::StalePass,
+        Self::Edge,
+        Self::ReferenceMissing,
+        Self::DeviceLost,
+        Self::OracleDisagreement,
+    ];
+
     /// The cause's name as the command line, JSON and the report write it.
     pub fn name(self) -> String {
         serde_json::to_value(self)

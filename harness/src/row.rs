@@ -1,6 +1,6 @@
 //! One line of the result: a scene, a stage, a pair of legs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
@@ -82,9 +82,14 @@ pub enum Verdict {
 }
 
 impl Row {
+    /// Items counted but not judged, as a share of those compared.
+    pub fn admitted_share(&self) -> f64 {
+        self.admitted as f64 / self.compared.max(1) as f64
+    }
+
     /// The verdict; a row that compared nothing and gives no reason diverges.
     pub fn verdict(&self) -> Verdict {
-        let share = self.admitted as f64 / self.compared.max(1) as f64;
+        let share = self.admitted_share();
         let over_budget = self.admitted_budget.is_some_and(|budget| share > budget);
         if self.differ > 0 || self.unexplained > 0 || over_budget {
             Verdict::Diverge
@@ -113,4 +118,20 @@ pub struct Summary {
     pub seconds: f64,
     /// Rows whose verdict is to diverge.
     pub diverging: u64,
+}
+
+impl Summary {
+    /// The summary of a run's rows. Sums stop at the largest `u64`.
+    pub fn of(rows: &[Row], seconds: f64) -> Self {
+        let total = |count: fn(&Row) -> u64| rows.iter().map(count).fold(0, u64::saturating_add);
+        let scenes: BTreeSet<&str> = rows.iter().map(|r| r.scene.as_str()).collect();
+        Self {
+            scenes: scenes.len() as u64,
+            compared: total(|r| r.compared),
+            unexplained: total(|r| r.unexplained),
+            skipped: total(|r| u64::from(r.skipped.is_some())),
+            seconds,
+            diverging: total(|r| u64::from(r.verdict() == Verdict::Diverge)),
+        }
+    }
 }

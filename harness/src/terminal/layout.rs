@@ -1,0 +1,132 @@
+//! How wide the columns are, and what stands above them.
+
+use console::measure_text_width;
+
+use crate::digest::leg_parts;
+
+/// Verdict, mark of the cache and a space.
+pub const MARK: usize = 3;
+
+/// Narrowest and widest column of names.
+const NAME: [usize; 2] = [24, 40];
+
+/// Narrowest column with a count in full (`✓ 12,345,678`), and with a compact
+/// count (`✓ 12.3M`), with the gap before it.
+const CELL: [usize; 2] = [14, 10];
+
+/// Widest column that a long name of an adapter gets.
+const CELL_MAX: usize = 16;
+
+/// Column of the edge share, and columns of times.
+const EDGE: usize = 10;
+const TIME: usize = 9;
+
+/// Least space between columns.
+const GAP: usize = 2;
+
+/// A pair of legs that has a column.
+pub type Columns = (String, String);
+
+/// Widths that fit the window and the pairs of legs seen so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Column of names.
+    pub name: usize,
+    /// Column of a pair of legs.
+    pub cell: usize,
+    /// Whether cells hold counts in full.
+    pub full: bool,
+    /// Column of the edge share; 0 if there is no room.
+    pub edge: usize,
+    /// Columns of times, spec's and the fastest GPU leg's; 0 if there is no room.
+    pub time: usize,
+}
+
+impl Layout {
+    /// The richest layout that fits; `None` if not even the verdicts do, and each
+    /// scene is better told in a sentence.
+    pub fn fit(window: usize, pairs: &[Columns]) -> Option<Self> {
+        let names = pairs.iter().flat_map(|(_, b)| above(b));
+        let longest = names.map(measure_text_width).max().unwrap_or(0);
+        let wide = (longest + GAP).min(CELL_MAX);
+        let choices = [
+            (CELL[0].max(wide), true, EDGE, TIME),
+            (CELL[1].max(wide), false, EDGE, TIME),
+            (CELL[1].max(wide), false, EDGE, 0),
+            (CELL[1], false, EDGE, 0),
+            (CELL[1], false, 0, 0),
+        ];
+        for (cell, full, edge, time) in choices {
+            let columns = MARK + pairs.len() * cell + edge + 2 * time;
+            if columns + NAME[0] <= window {
+                let name = (window - columns).min(NAME[1]);
+                return Some(Self {
+                    name,
+                    cell,
+                    full,
+                    edge,
+                    time,
+                });
+            }
+        }
+        None
+    }
+
+    /// The lines above the table: adapter or leg, and path.
+    pub fn header(self, pairs: &[Columns]) -> Vec<String> {
+        let side = match pairs {
+            [(a, _), ..] if pairs.iter().all(|(other, _)| other == a) => {
+                format!("{a} against")
+            }
+            _ => String::new(),
+        };
+        let mut lines = vec![
+            format!("{}{}", " ".repeat(MARK), right(&side, self.name)),
+            format!("{}{}", " ".repeat(MARK), pad("scene", self.name)),
+        ];
+        for (_, b) in pairs {
+            for (line, text) in lines.iter_mut().zip(above(b)) {
+                line.push_str(&right(&cut(text, self.cell - GAP), self.cell));
+            }
+        }
+        for (title, width) in [("edge", self.edge), ("spec", self.time), ("gpu", self.time)] {
+            if width > 0 {
+                lines[1].push_str(&right(title, width));
+            }
+        }
+        lines
+    }
+
+    /// Whether the header cannot tell these pairs apart, so that they must be
+    /// listed in full.
+    pub fn ambiguous(self, pairs: &[Columns]) -> bool {
+        let room = self.cell - GAP;
+        let long = |text: &str| measure_text_width(text) > room;
+        pairs
+            .iter()
+            .any(|(a, b)| *a != pairs[0].0 || above(b).into_iter().any(long))
+    }
+}
+
+/// What stands above the column of a leg.
+fn above(label: &str) -> [&str; 2] {
+    let (leg, adapter, path) = leg_parts(label);
+    [adapter.unwrap_or(leg), path.unwrap_or("")]
+}
+
+/// Cuts text to a width, with a mark where something is missing.
+pub fn cut(text: &str, width: usize) -> String {
+    console::truncate_str(text, width, "…").into_owned()
+}
+
+/// Fills up on the right.
+pub fn pad(text: &str, width: usize) -> String {
+    let fill = width.saturating_sub(measure_text_width(text));
+    format!("{text}{}", " ".repeat(fill))
+}
+
+/// Fills up on the left.
+pub fn right(text: &str, width: usize) -> String {
+    let fill = width.saturating_sub(measure_text_width(text));
+    format!("{}{text}", " ".repeat(fill))
+}
