@@ -108,11 +108,27 @@ system_lavapipe() {
 
 setup_vulkan() {
     mesa=$native/mesa
-    if system_lavapipe || [ -e "$mesa/lvp_icd.json" ]; then
-        :
-    elif ! have apt-get; then
-        say "lavapipe: $why; to compare on it too, install Mesa's Vulkan drivers and run ./x setup"
+    if ! system_lavapipe && [ ! -e "$mesa/lvp_icd.json" ]; then install_lavapipe; fi
+    if system_lavapipe; then
+        part lavapipe "$(debian_version mesa-vulkan-drivers)" "$icd" "$icd"
+    elif [ -e "$mesa/lvp_icd.json" ]; then
+        for dir in "$mesa/usr/lib"/*-linux-gnu; do load_from "$dir"; done
+        drivers=${drivers:+$drivers:}$mesa/lvp_icd.json
+        part lavapipe "$(cat "$mesa/version")" deb:mesa-vulkan-drivers "$mesa/lvp_icd.json"
+    else
         part lavapipe missing deb:mesa-vulkan-drivers
+    fi
+    if system_loader; then
+        part vulkan-loader "$(debian_version libvulkan1)" "$loader" "$loader"
+    else
+        load_from "$swiftshader/loader"
+        part vulkan-loader "chromium-$chromium" npm:@sparticuz/chromium "$swiftshader/loader/libvulkan.so.1"
+    fi
+}
+
+install_lavapipe() {
+    if ! have apt-get; then
+        say "lavapipe: $why; to compare on it too, install Mesa's Vulkan drivers and run ./x setup"
     elif am_root; then
         { apt_update && try_apt install --no-install-recommends mesa-vulkan-drivers; } ||
             die "lavapipe from Debian: $why"
@@ -120,21 +136,6 @@ setup_vulkan() {
     else
         unpack_mesa || die "lavapipe from Debian: $why"
         say "lavapipe $(cat "$mesa/version"): $mesa (Debian mesa-vulkan-drivers)"
-    fi
-    if [ -e "$mesa/lvp_icd.json" ]; then
-        for dir in "$mesa/usr/lib"/*-linux-gnu "$mesa/lib"/*-linux-gnu; do
-            [ ! -d "$dir" ] || load_from "$dir"
-        done
-        drivers=${drivers:+$drivers:}$mesa/lvp_icd.json
-        part lavapipe "$(cat "$mesa/version")" deb:mesa-vulkan-drivers "$mesa/lvp_icd.json"
-    elif system_lavapipe; then
-        part lavapipe "$(debian_version mesa-vulkan-drivers)" "$icd" "$icd"
-    fi
-    if system_loader; then
-        part vulkan-loader "$(debian_version libvulkan1)" "$loader" "$loader"
-    else
-        load_from "$swiftshader/loader"
-        part vulkan-loader "chromium-$chromium" npm:@sparticuz/chromium "$swiftshader/loader/libvulkan.so.1"
     fi
 }
 
@@ -146,9 +147,23 @@ unpack_mesa() {
         case ${deb##*/} in libc6_*) continue ;; esac # a process must have the system's, only
         try dpkg -x "$deb" "$tmp/mesa" || return 1
     done
-    rm -f "$tmp/mesa"/usr/lib/*/libvulkan.so*
     dpkg-deb -f "$tmp/apt/archives"/mesa-vulkan-drivers_*.deb Version >"$tmp/mesa/version"
+    [ ! -d "$tmp/mesa/lib" ] || cp -a "$tmp/mesa/lib" "$tmp/mesa/usr/"
+    rm -f "$tmp/mesa"/usr/lib/*/libvulkan.so* # the loader is chosen elsewhere
+    for libs in "$tmp/mesa/usr/lib"/*-linux-gnu; do libs=${libs##*/}; done
+    ln -s "$libs" "$tmp/mesa/usr/lib/lib" # LLVM looks for its own libraries in ../lib, only
     sed "s|\"library_path\": \"|&$mesa|" "$tmp/mesa"/usr/share/vulkan/icd.d/lvp_icd*.json \
         >"$tmp/mesa/lvp_icd.json"
     place "$tmp/mesa" "$mesa"
+    loads "$mesa/usr/lib/$libs/libvulkan_lvp.so" "$mesa/usr/lib/$libs" || { rm -rf "$mesa" && return 1; }
+}
+
+# loads LIBRARY FOLDER: whether a program that cargo links would find all that the library needs.
+loads() {
+    cat >"$tmp/a.c" <<'END'
+#include <dlfcn.h>
+#include <stdio.h>
+int main(int n, char **path) { return n && dlopen(path[1], RTLD_NOW) ? 0 : !!puts(dlerror()); }
+END
+    try cc -o "$tmp/a" "$tmp/a.c" "-Wl,--disable-new-dtags,-rpath,$2" -ldl && try "$tmp/a" "$1"
 }
