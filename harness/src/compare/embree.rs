@@ -1,0 +1,57 @@
+//! The spec's coverage against Embree's hits, in screen space.
+//!
+//! A pair is a sample's ray and a triangle. Before any result is looked at, each
+//! pair is put into one of four classes:
+//!
+//! - *edge*: with the exact edge functions E of the sample, the least of them is
+//!   within `2^-22 (|E_0| + |E_1| + |E_2|)` of 0. Embree's own tolerance there is
+//!   half of that. (The least with its sign: a sample that another edge clearly
+//!   excludes is judged, however close it lies to the line through this one.)
+//! - *unresolved*: not edge, but Embree's rounding may exceed its own tolerance
+//!   ([`crate::embree::bound`]). Only triangles longer than 16 pixels that are thin,
+//!   or seen edge on, have such pairs.
+//! - *inside* and *outside*: Embree must report the triangle, or must not.
+//!
+//! The first two are counted, agreeing or not; the other two must agree. For pairs
+//! inside, depth is compared as well: Embree's t within its bound of the spec's
+//! key, and hits in the order of their keys wherever the bounds tell them apart.
+
+mod band;
+mod edge;
+mod order;
+mod vote;
+
+use rayon::prelude::*;
+use triptych_spec::vertex::Primitives;
+
+use crate::embree::{EmbreeError, RayHits};
+pub use vote::{Conflict, Disagreement, EmbreeVote};
+
+/// Rows of pixels that one task works through. Memory is proportional to the
+/// triangles that meet a band; the result does not depend on it.
+const BAND: u32 = 8;
+
+/// Compares the spec's coverage of `spec` with what Embree reports.
+///
+/// Deterministic: bands are independent, and summed in order.
+///
+/// # Errors
+/// The first error that Embree reports, in order of bands.
+pub fn compare<E: RayHits>(spec: &Primitives, embree: &E) -> Result<EmbreeVote, EmbreeError> {
+    let height = spec.size.height;
+    let bands: Vec<Result<EmbreeVote, EmbreeError>> = (0..height.div_ceil(BAND))
+        .into_par_iter()
+        .map(|band| {
+            let first = band * BAND;
+            band::judge(spec, embree, first..(first + BAND).min(height))
+        })
+        .collect();
+    let mut total = EmbreeVote::default();
+    for band in bands {
+        total.add(band?);
+    }
+    Ok(total)
+}
+
+#[cfg(test)]
+mod tests;
