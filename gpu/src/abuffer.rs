@@ -10,9 +10,22 @@ use crate::error::GpuError;
 use crate::frame::{Band, Frame};
 use crate::raster::{Next, Rasterizer, after, first_capacity, per_pixel};
 
+/// Another leg's results in place of the stages before one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Given<'a> {
+    /// The nearest opaque surface of each pixel.
+    pub opaque: &'a Opaque,
+    /// Lists of the whole target: built, or sorted as well.
+    pub lists: &'a Lists,
+    /// Whether they are sorted, so that only `resolve` runs.
+    pub sorted: bool,
+}
+
 /// What to do and what to leave out.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct Options<'a> {
+    /// Start from these instead of from triangles.
+    pub given: Option<Given<'a>>,
     /// Nodes of the first attempt; `None` leaves it to the kernel's host.
     pub capacity: Option<u32>,
     /// Draw opaque triangles.
@@ -81,7 +94,7 @@ struct Buffers {
 /// Limits by name, WGSL errors, and whatever the device reports.
 pub fn run(
     rasterizer: &Rasterizer<'_>,
-    options: Options,
+    options: Options<'_>,
     is_opaque: impl Fn(u32) -> bool,
     mut inspect: impl FnMut(Band, &Lists) -> ControlFlow<()>,
 ) -> Result<Abuffer, GpuError> {
@@ -113,10 +126,10 @@ pub fn run(
             times: Times::default(),
         };
         let buffers = run.buffers()?;
-        if options.opaque {
+        if options.opaque && options.given.is_none() {
             run.opaque(&buffers, &is_opaque)?;
         }
-        if options.lists {
+        if options.lists && options.given.is_none() {
             run.build(&buffers, &is_opaque)?;
         }
         let built = run.lists(&buffers)?;
@@ -167,7 +180,7 @@ impl Times {
 /// One attempt at one band.
 struct Run<'r, 'g> {
     rasterizer: &'r Rasterizer<'g>,
-    options: Options,
+    options: Options<'r>,
     band: Band,
     capacity: u32,
     times: Times,
@@ -181,6 +194,10 @@ impl Run<'_, '_> {
     fn buffers(&self) -> Result<Buffers, GpuError> {
         let gpu = self.gpu();
         let pixels = self.band.pixels(self.rasterizer.size);
+        let picture = gpu.storage("picture", 16 * u64::from(pixels))?;
+        if let Some(given) = self.options.given {
+            return self.buffers_from(given, picture);
+        }
         let capacity = if self.options.lists {
             u64::from(self.capacity)
         } else {
@@ -193,7 +210,29 @@ impl Run<'_, '_> {
             heads: gpu.filled("heads", pixels, EOL)?,
             nodes: gpu.storage("nodes", 16 * capacity)?,
             colours: gpu.storage("colours", 16 * capacity)?,
-            picture: gpu.storage("picture", 16 * u64::from(pixels))?,
+            picture,
+        })
+    }
+
+    fn buffers_from(&self, given: Given<'_>, picture: wgpu::Buffer) -> Result<Buffers, GpuError> {
+        let gpu = self.gpu();
+        let width = self.rasterizer.size.width;
+        let first = (self.band.first * width) as usize;
+        let pixels = first..first + self.band.pixels(self.rasterizer.size) as usize;
+        let lists = given.lists;
+        let nodes: Vec<[u32; 4]> = lists
+            .nodes
+            .iter()
+            .map(|n| [n.key, n.next, n.prim, n.mask])
+            .collect();
+        Ok(Buffers {
+            counter: gpu.filled("counter", 1, lists.attempts)?,
+            opaque_key: gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?,
+            opaque_prim: gpu.upload("opaque_prim", &given.opaque.prim[pixels.clone()])?,
+            heads: gpu.upload("heads", &lists.heads[pixels])?,
+            nodes: gpu.upload("nodes", &nodes)?,
+            colours: gpu.upload("colours", &lists.colours)?,
+            picture,
         })
     }
 
@@ -230,7 +269,7 @@ impl Run<'_, '_> {
     /// Sorts and resolves; gives the sorted lists and appends to the picture.
     fn finish(&mut self, b: &Buffers, image: &mut Vec<[f32; 3]>) -> Result<Lists, GpuError> {
         let buffers = b.named();
-        if self.options.lists {
+        if self.options.lists && !self.options.given.is_some_and(|g| g.sorted) {
             self.times.sort =
                 per_pixel(self.rasterizer, "abuffer", "sort", self.frame(), &buffers)?;
         }

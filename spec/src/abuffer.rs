@@ -13,7 +13,7 @@
 //! [`crate::vertex::DEPTH_ONE`].
 
 use crate::bound::{Bounded, TINY, gamma};
-use crate::raster::{Fragment, cover};
+use crate::raster::{Fragment, cover_only};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
 
@@ -87,10 +87,10 @@ pub fn opaque(scene: &Scene, primitives: &Primitives) -> Opaque {
         key: vec![NOTHING; pixels],
         prim: vec![NOTHING; pixels],
     };
-    cover(primitives, |f| {
+    let select = |prim| is_opaque(scene, primitives, prim);
+    cover_only(primitives, select, |f| {
         let pixel = f.pixel as usize;
-        let seen = (nearest.key[pixel], nearest.prim[pixel]);
-        if is_opaque(scene, primitives, f.prim) && (f.key, f.prim) < seen {
+        if (f.key, f.prim) < (nearest.key[pixel], nearest.prim[pixel]) {
             (nearest.key[pixel], nearest.prim[pixel]) = (f.key, f.prim);
         }
     });
@@ -115,9 +115,10 @@ pub fn build(
         attempts: 0,
         capacity,
     };
-    cover(primitives, |f| {
+    let select = |prim| !is_opaque(scene, primitives, prim);
+    cover_only(primitives, select, |f| {
         let hidden = depth_test && f.key >= opaque.key[f.pixel as usize];
-        if !hidden && !is_opaque(scene, primitives, f.prim) {
+        if !hidden {
             insert(&mut lists, f, colour(scene, primitives, f.prim));
         }
     });
@@ -226,11 +227,11 @@ fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
         add(i, transmittance * a, [r, g, b]);
         transmittance *= 1.0 - a;
     }
-    // A surface that nothing covers is stored as it is.
+    // Without layers the surface is stored as it is, unless it is flushed.
     if n == 0 {
         return behind.map(|c| Bounded {
             value: f64::from(c),
-            bound: 0.0,
+            bound: TINY,
         });
     }
     add(n, transmittance, behind);

@@ -74,7 +74,11 @@ impl Setup {
         let numerator: i128 = (0..3)
             .map(|i| i128::from(edges[i]) * i128::from(self.corners[i][2]))
             .sum();
-        let key = numerator.div_euclid(i128::from(self.area));
+        // The same quotient, faster where 64 bits hold the numerator.
+        let key = match i64::try_from(numerator) {
+            Ok(numerator) => i128::from(numerator.div_euclid(self.area)),
+            Err(_) => numerator.div_euclid(i128::from(self.area)),
+        };
         u32::try_from(key).expect("a convex combination of 31-bit keys")
     }
 
@@ -127,9 +131,18 @@ impl Setup {
 
 /// Stage `cover`: every fragment of every triangle, in order of triangle, row and
 /// column, with one sample in the middle of each pixel.
-pub fn cover(primitives: &Primitives, mut emit: impl FnMut(Fragment)) {
+pub fn cover(primitives: &Primitives, emit: impl FnMut(Fragment)) {
+    cover_only(primitives, |_| true, emit);
+}
+
+/// [`cover`] for the triangles that `select` picks.
+pub fn cover_only(
+    primitives: &Primitives,
+    select: impl Fn(u32) -> bool,
+    mut emit: impl FnMut(Fragment),
+) {
     let (size, bits) = (primitives.size, primitives.bits);
-    for prim in 0..column(primitives.prims.len() as i64) {
+    for prim in (0..column(primitives.prims.len() as i64)).filter(|prim| select(*prim)) {
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };
@@ -147,6 +160,19 @@ pub fn cover(primitives: &Primitives, mut emit: impl FnMut(Fragment)) {
             }
         }
     }
+}
+
+/// How many fragments [`cover`] emits, without evaluating them.
+pub fn count(primitives: &Primitives) -> u64 {
+    let (size, bits) = (primitives.size, primitives.bits);
+    let fragments = |prim| {
+        let setup = Setup::new(primitives, prim)?;
+        let span = |row| setup.span(row, size, bits).len() as u64;
+        Some(setup.rows(size, bits).map(span).sum::<u64>())
+    };
+    (0..column(primitives.prims.len() as i64))
+        .filter_map(fragments)
+        .sum()
 }
 
 /// Where the sample of a column (row) lies, in sub-pixels.

@@ -1,0 +1,100 @@
+//! Comparers: each takes two differently labelled observations and says what was
+//! compared, what differs, and why.
+
+pub mod embree;
+pub mod fragments;
+pub mod image;
+pub mod lists;
+pub mod opaque;
+pub mod order;
+
+use std::collections::BTreeMap;
+
+use crate::cause::Cause;
+use crate::observe::{Against, Observed};
+use crate::row::Class;
+
+/// How many differences are described in full.
+pub const DESCRIBED_MAX: usize = 4;
+
+/// The outcome of one comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// How the two were compared.
+    pub class: Class,
+    /// What was counted.
+    pub unit: &'static str,
+    /// Items compared.
+    pub compared: u64,
+    /// Items that differ, by cause.
+    pub causes: BTreeMap<Cause, u64>,
+    /// Items that differ without a cause.
+    pub unexplained: u64,
+    /// Items counted but not judged.
+    pub admitted: u64,
+    /// Largest share of `admitted` that passes.
+    pub admitted_budget: Option<f64>,
+    /// Largest error over bound.
+    pub error_over_bound: Option<f64>,
+    /// The first differences, in words.
+    pub described: Vec<String>,
+    /// Pixels that differ, for the map of causes.
+    pub marks: Vec<(u32, Cause)>,
+    /// One line for people.
+    pub note: String,
+}
+
+impl Judgement {
+    /// Nothing compared yet.
+    pub fn new(class: Class, unit: &'static str) -> Self {
+        Self {
+            class,
+            unit,
+            compared: 0,
+            causes: BTreeMap::new(),
+            unexplained: 0,
+            admitted: 0,
+            admitted_budget: None,
+            error_over_bound: None,
+            described: Vec::new(),
+            marks: Vec::new(),
+            note: String::new(),
+        }
+    }
+
+    /// An exact comparison of `compared` items of which `unexplained` differ for
+    /// reasons that the comparer cannot know.
+    pub fn exact(unit: &'static str, compared: u64, unexplained: u64) -> Self {
+        Self {
+            compared,
+            unexplained,
+            ..Self::new(Class::Exact, unit)
+        }
+    }
+
+    /// Counts a difference; `words` is only asked for the first few.
+    pub fn differs(&mut self, cause: Cause, pixel: Option<u32>, words: impl FnOnce() -> String) {
+        *self.causes.entry(cause).or_default() += 1;
+        if let Some(pixel) = pixel {
+            self.marks.push((pixel, cause));
+        }
+        if self.described.len() < DESCRIBED_MAX {
+            self.described
+                .push(format!("{}: {}", cause.name(), words()));
+        }
+    }
+
+    /// Items that differ, whatever the cause.
+    pub fn differ(&self) -> u64 {
+        self.causes.values().sum::<u64>() + self.unexplained
+    }
+}
+
+/// Compares two legs. Only labels declared [`Against`] each other are accepted.
+pub fn compare<A: Against<B>, B, T, U>(
+    a: &Observed<A, T>,
+    b: &Observed<B, U>,
+    judge: impl FnOnce(&T, &U) -> Judgement,
+) -> Judgement {
+    judge(&a.value, &b.value)
+}

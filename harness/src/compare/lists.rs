@@ -1,0 +1,87 @@
+//! Stage `build`: linked lists by certificate, then as multisets.
+//!
+//! Decision procedure, per pixel; the first that applies is the cause:
+//!
+//! 1. A head or link to an address that was handed out but lies beyond the
+//!    capacity is `overflow`; to one inside the capacity that was never handed
+//!    out, `stale-pass`; to any other, `corrupt-link`. A link to a node that the
+//!    same list holds already is `cycle`; to one of another list, `corrupt-link`.
+//! 2. A fragment that the list lacks is `lost-node` if a node that no list leads to
+//!    holds it, else `coverage`.
+//! 3. A fragment that the list holds too often is `duplicate` if it belongs there
+//!    once; with another key than the spec's `depth-key`, with another mask
+//!    `sample-mask`, with another colour `interval`; else `coverage`.
+//!
+//! Last, over all pixels: nodes that no list leads to and no list lacks are
+//! `lost-node`; a counter that is not explained by the above is `overflow`.
+
+mod certificate;
+mod membership;
+
+use triptych_spec::abuffer::{Lists, Sorted};
+use triptych_spec::raster::Fragment;
+
+use crate::cause::Cause;
+use crate::compare::Judgement;
+use crate::row::Class;
+
+pub use certificate::{Certificate, Fault, certify};
+
+/// What the spec says a band's lists must hold.
+pub struct Expected<'a> {
+    /// The spec's lists for the whole target.
+    pub sorted: &'a Sorted,
+    /// First pixel of the band.
+    pub first_pixel: u32,
+    /// Colour of each triangle.
+    pub faces: &'a [[f32; 4]],
+    /// Pixels per row.
+    pub width: u32,
+}
+
+impl Expected<'_> {
+    fn list(&self, pixel: u32) -> &[Fragment] {
+        self.sorted.list((self.first_pixel + pixel) as usize)
+    }
+
+    /// Fragments of the pixels of a band.
+    fn total(&self, pixels: usize) -> u64 {
+        let first = self.first_pixel as usize;
+        let offsets = &self.sorted.offsets;
+        u64::from(offsets[first + pixels] - offsets[first])
+    }
+}
+
+/// Compares a band's lists, which must hold everything.
+pub fn compare(expected: &Expected<'_>, lists: &Lists) -> Judgement {
+    let needed = expected.total(lists.heads.len());
+    let mut judgement = Judgement {
+        compared: needed,
+        ..Judgement::new(Class::Structure, "fragments")
+    };
+    membership::judge(expected, lists, &certify(lists), true, &mut judgement);
+    // A fragment too many or too few was counted, too: that is no second cause.
+    if judgement.differ() == 0 {
+        judge_counter(needed, lists, &mut judgement);
+    }
+    judgement
+}
+
+/// Compares what an overflowing attempt stored: an arbitrary subset, but every
+/// node in one list, every fragment one of the spec's, the counter exact.
+pub fn compare_overflowed(expected: &Expected<'_>, lists: &Lists) -> Judgement {
+    let mut judgement = Judgement::new(Class::Structure, "nodes");
+    // The counter is an item, too: with no capacity it is the only one.
+    judgement.compared = lists.nodes.len() as u64 + 1;
+    membership::judge(expected, lists, &certify(lists), false, &mut judgement);
+    judge_counter(expected.total(lists.heads.len()), lists, &mut judgement);
+    judgement
+}
+
+fn judge_counter(needed: u64, lists: &Lists, judgement: &mut Judgement) {
+    if u64::from(lists.attempts) != needed {
+        judgement.differs(Cause::Overflow, None, || {
+            format!("the counter is {}, must be {needed}", lists.attempts)
+        });
+    }
+}

@@ -1,0 +1,86 @@
+//! Stage `sort`: the order of every list.
+
+use triptych_spec::abuffer::{EOL, Lists, Sorted};
+use triptych_spec::raster::Fragment;
+
+use crate::cause::Cause;
+use crate::compare::Judgement;
+use crate::compare::fragments::at;
+use crate::row::Class;
+
+/// Follows every list of `lists`; gives fragments list by list. Pixels count from
+/// 0. `None` if a link leads astray or a list does not end.
+pub fn flatten(lists: &Lists) -> Option<Sorted> {
+    let mut flat = Sorted {
+        offsets: vec![0],
+        fragments: Vec::with_capacity(lists.nodes.len()),
+    };
+    for (pixel, &head) in (0_u32..).zip(&lists.heads) {
+        let mut at = head;
+        while at != EOL {
+            let node = lists.nodes.get(at as usize)?;
+            if flat.fragments.len() == lists.nodes.len() {
+                return None;
+            }
+            let (prim, key, mask) = (node.prim, node.key, node.mask);
+            flat.fragments.push(Fragment {
+                pixel,
+                prim,
+                key,
+                mask,
+            });
+            at = node.next;
+        }
+        flat.offsets.push(u32::try_from(flat.fragments.len()).ok()?);
+    }
+    Some(flat)
+}
+
+/// Compares the order of lists that hold the same fragments. A run of equal keys
+/// in another order is a broken tie; everything else is not sorted.
+pub fn compare(spec: &Sorted, other: Option<&Sorted>, width: u32) -> Judgement {
+    let mut judgement = Judgement::new(Class::Tie, "fragments");
+    let Some(other) = other.filter(|o| o.offsets == spec.offsets) else {
+        judgement.differs(Cause::CorruptLink, None, || {
+            "sorting changed the number of fragments in a list".into()
+        });
+        return judgement;
+    };
+    for pixel in 0..spec.offsets.len() - 1 {
+        let (must, seen) = (spec.list(pixel), other.list(pixel));
+        judgement.compared += must.len() as u64;
+        if must == seen {
+            continue;
+        }
+        let keys_agree = must.iter().map(|f| f.key).eq(seen.iter().map(|f| f.key));
+        let cause = if keys_agree {
+            Cause::TieOrder
+        } else {
+            Cause::SortOrder
+        };
+        let pixel = u32::try_from(pixel).expect("a target has fewer than 2^32 pixels");
+        judgement.differs(cause, Some(pixel), || {
+            format!(
+                "{} is {}, must be {}",
+                at(pixel, width),
+                words(seen),
+                words(must)
+            )
+        });
+    }
+    judgement
+}
+
+/// A list as `(key, row)` pairs, shortened.
+pub fn words(list: &[Fragment]) -> String {
+    const SHOWN: usize = 6;
+    let mut shown: Vec<String> = list
+        .iter()
+        .take(SHOWN)
+        .map(|f| format!("{}:{}", f.key, f.prim))
+        .collect();
+    if list.len() > SHOWN {
+        shown.push(format!("… {} in all", list.len()));
+    }
+    format!("[{}]", shown.join(" "))
+}

@@ -1,0 +1,89 @@
+//! What a scene needs, decided before anything runs.
+
+use triptych_spec::scene::Scene;
+
+/// One pass: whether it runs, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pass {
+    /// Stage name.
+    pub name: &'static str,
+    /// Whether it runs.
+    pub runs: bool,
+    /// One clause.
+    pub reason: String,
+}
+
+/// Which passes a scene needs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Every pass of the family, in order.
+    pub passes: Vec<Pass>,
+    /// Whether opaque triangles are drawn.
+    pub opaque: bool,
+    /// Whether lists are built, sorted and blended.
+    pub lists: bool,
+    /// Whether fragments at or behind an opaque surface are left out.
+    pub depth_test: bool,
+    /// Whether every fragment is streamed out and compared.
+    pub cover: bool,
+}
+
+impl Plan {
+    /// The plan of a scene. With `skip` false everything runs and every transparent
+    /// fragment is stored.
+    pub fn new(scene: &Scene, skip: bool) -> Self {
+        let opaque = scene.triangles.iter().filter(|t| t.is_opaque()).count();
+        let transparent = scene.triangles.len() - opaque;
+        let mut passes = Vec::new();
+        let mut decide = |name, needed: bool, why: String, why_not: &str| {
+            let runs = needed || !skip;
+            let reason = match (needed, skip) {
+                (true, _) => why,
+                (false, true) => why_not.to_owned(),
+                (false, false) => format!("not needed ({why_not}), but nothing is skipped"),
+            };
+            passes.push(Pass { name, runs, reason });
+            runs
+        };
+        let any = !scene.triangles.is_empty();
+        let all = format!("{} triangles", scene.triangles.len());
+        for name in ["transform", "clip", "snap"] {
+            decide(name, any, all.clone(), "no triangles");
+        }
+        let cover = decide(
+            "cover",
+            opaque > 0,
+            format!("{opaque} opaque triangles are in no list"),
+            if any { "the lists hold every fragment" } else { "no triangles" },
+        );
+        let opaque_runs = decide(
+            "opaque",
+            opaque > 0,
+            format!("{opaque} opaque triangles"),
+            "no opaque triangles",
+        );
+        let mut lists = false;
+        for name in ["build", "sort"] {
+            let why = format!("{transparent} transparent triangles");
+            lists = decide(name, transparent > 0, why, "no transparent triangles");
+        }
+        decide("resolve", true, "the picture".into(), "");
+        let depth_test = skip && opaque > 0 && transparent > 0;
+        passes.push(Pass {
+            name: "depth test",
+            runs: depth_test,
+            reason: match (skip, depth_test) {
+                (true, true) => "fragments at or behind an opaque surface are not stored".into(),
+                (true, false) => "opaque and transparent triangles do not meet".into(),
+                (false, _) => "nothing is skipped: hidden fragments are stored".into(),
+            },
+        });
+        Self { passes, opaque: opaque_runs, lists, depth_test, cover }
+    }
+
+    /// Why a pass does not run; `None` if it does.
+    pub fn skipped(&self, name: &str) -> Option<String> {
+        let pass = self.passes.iter().find(|p| p.name == name)?;
+        (!pass.runs).then(|| format!("plan: {}", pass.reason))
+    }
+}

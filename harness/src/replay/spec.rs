@@ -1,0 +1,116 @@
+//! The spec's side of a replay.
+
+use std::time::{Duration, Instant};
+
+use triptych_spec::abuffer::{self, Lists, NOTHING, Opaque, Sorted};
+use triptych_spec::bound::Bounded;
+use triptych_spec::raster::{self, Fragment};
+use triptych_spec::scene::Scene;
+use triptych_spec::vertex::Primitives;
+
+use crate::plan::Plan;
+
+/// More fragments than this are refused: with nodes, colours, sorted lists and the
+/// legs' copies, a fragment costs about 100 bytes, so this is about 7 GB.
+pub const FRAGMENTS_MAX: u64 = 1 << 26;
+
+/// Everything that the spec says about a scene, from one set of snapped triangles.
+pub struct SpecRun {
+    /// What it starts from.
+    pub primitives: Primitives,
+    /// Colour of each row of `prims`.
+    pub faces: Vec<[f32; 4]>,
+    /// Every fragment, if the plan asks for the stream.
+    pub cover: Vec<Fragment>,
+    /// Nearest opaque surfaces.
+    pub opaque: Opaque,
+    /// Linked lists as inserted, one by one.
+    pub lists: Lists,
+    /// The lists, sorted.
+    pub sorted: Sorted,
+    /// The picture, with bounds.
+    pub image: Vec<[Bounded; 3]>,
+    /// Time of each stage.
+    pub times: Times,
+}
+
+/// Time of each stage.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// Stage cover.
+    pub cover: Duration,
+    /// Stage opaque.
+    pub opaque: Duration,
+    /// Stage build.
+    pub build: Duration,
+    /// Stage sort.
+    pub sort: Duration,
+    /// Stage resolve.
+    pub resolve: Duration,
+}
+
+impl SpecRun {
+    /// Runs the stages that the plan names.
+    ///
+    /// # Errors
+    /// One line if the scene has more than [`FRAGMENTS_MAX`] fragments.
+    pub fn new(scene: &Scene, primitives: Primitives, plan: &Plan) -> Result<Self, String> {
+        let count = raster::count(&primitives);
+        if count > FRAGMENTS_MAX {
+            return Err(format!(
+                "the triangles cover {count} fragments, more than the {FRAGMENTS_MAX} that a \
+                 replay holds; use a smaller size or fewer triangles"
+            ));
+        }
+        let pixels = primitives.size.pixels();
+        let mut times = Times::default();
+        let mut cover = Vec::new();
+        if plan.cover {
+            times.cover = timed(|| raster::cover(&primitives, |f| cover.push(f))).1;
+        }
+        let mut opaque = Opaque { key: vec![NOTHING; pixels], prim: vec![NOTHING; pixels] };
+        if plan.opaque {
+            (opaque, times.opaque) = timed(|| abuffer::opaque(scene, &primitives));
+        }
+        let depth_test = plan.depth_test;
+        let build = || abuffer::build(scene, &primitives, &opaque, depth_test, u32::MAX);
+        let (lists, build) = timed(build);
+        let (sorted, sort) = timed(|| abuffer::sort(&lists));
+        let resolve = || abuffer::resolve(scene, &primitives, &opaque, &sorted);
+        let (image, resolve) = timed(resolve);
+        Ok(Self {
+            faces: faces(scene, &primitives),
+            cover,
+            opaque,
+            lists,
+            sorted,
+            image,
+            times: Times { build, sort, resolve, ..times },
+            primitives,
+        })
+    }
+
+    /// Whether a row of `prims` is opaque.
+    pub fn is_opaque(&self, prim: u32) -> bool {
+        self.faces[prim as usize][3] >= 1.0
+    }
+
+    /// The picture without its bounds, as an `f32` shows it.
+    pub fn picture(&self) -> Vec<[f32; 3]> {
+        #[expect(clippy::cast_possible_truncation, reason = "for showing")]
+        let channel = |b: Bounded| b.value as f32;
+        self.image.iter().map(|p| p.map(channel)).collect()
+    }
+}
+
+/// Colour of each row of `prims`.
+pub fn faces(scene: &Scene, primitives: &Primitives) -> Vec<[f32; 4]> {
+    primitives.source.iter().map(|s| scene.triangles[*s as usize].colour).collect()
+}
+
+/// A result and how long it took.
+pub fn timed<T>(f: impl FnOnce() -> T) -> (T, Duration) {
+    let start = Instant::now();
+    let result = f();
+    (result, start.elapsed())
+}
