@@ -25,9 +25,11 @@ setup_cc() {
 setup_embree() {
     lib=
     if [ -n "${EMBREE_DIR-}" ]; then
+        cd "$here" || exit # EMBREE_DIR may be relative
         for dir in "$EMBREE_DIR" "$EMBREE_DIR/lib64" "$EMBREE_DIR/lib"; do
             [ ! -e "$dir/libembree4.so.4" ] || lib=$(cd "$dir" && pwd -P)/libembree4.so.4
         done
+        cd "$root" || exit
         [ -n "$lib" ] || die "EMBREE_DIR=$EMBREE_DIR: libembree4.so.4 is neither in it nor in its lib"
     else
         lib=$(system_library libembree4.so.4)
