@@ -1,0 +1,227 @@
+//! Stages as files that others read without us: NumPy arrays, EXR and PNG.
+//!
+//! `DIR/<scene>/<leg>[@adapter-path]/<stage>/<name>.npy`, row-major and little
+//! endian; x right, y down, origin top left. Each leg's folder has a `meta.json`
+//! ([`Meta`]). Existing files are replaced.
+//!
+//! | array | type and shape | content |
+//! |---|---|---|
+//! | `vertex/snapped` | i32, n × 3 | x and y in sub-pixels, z depth key |
+//! | `vertex/prims` | u32, m × 3 | triangles after clipping, rows of `snapped` |
+//! | `vertex/source` | u32, m × 2 | instance and source triangle of each |
+//! | `abuffer/offsets` | u32, pixels + 1 | where each pixel's list starts, row-major |
+//! | `abuffer/depth` | u32, n | depth keys, sorted within each list |
+//! | `abuffer/prim` | u32, n | row of `vertex/prims` |
+//! | `abuffer/mask` | u32, n | covered samples |
+//! | `abuffer/rgba` | f32, n × 4 | linear colour and opacity |
+//! | `<stage>/<image>` | f32, h × w × 3 | linear colours; also `.exr` and `.png` |
+
+mod name;
+mod stages;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use npyz::WriterBuilder;
+use serde::{Deserialize, Serialize};
+use triptych_spec::scene::Size;
+
+use crate::picture;
+use name::component;
+
+/// The folder of a dump.
+#[derive(Clone, Debug)]
+pub struct Dump {
+    dir: PathBuf,
+}
+
+/// The folder of one leg of one scene.
+#[derive(Clone, Debug)]
+pub struct LegDump {
+    dir: PathBuf,
+}
+
+/// What the arrays do not say themselves; `meta.json` in each leg's folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meta {
+    /// The scene's name as it is; the folder's may be escaped.
+    pub scene: String,
+    /// The leg's label as it is.
+    pub leg: String,
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Sub-pixel bits of `vertex/snapped`.
+    pub subpixel_bits: u32,
+    /// Where the samples lie in a pixel, in pixels from its top left; bit `i` of a
+    /// mask belongs to entry `i`.
+    pub sample_positions: Vec<[f64; 2]>,
+    /// Name to version of what made the dump.
+    pub versions: BTreeMap<String, String>,
+}
+
+impl Dump {
+    /// A dump into a folder, which is made when something is written.
+    pub fn new(dir: impl AsRef<Path>) -> Self {
+        Self {
+            dir: dir.as_ref().to_owned(),
+        }
+    }
+
+    /// The folder for a leg of a scene, such as `gpu@llvmpipe/fragment` of
+    /// `abuffer/needle-fan`. A path of an adapter is joined to it with a hyphen;
+    /// whatever else could lead elsewhere is escaped.
+    pub fn leg(&self, scene: &str, leg: &str) -> LegDump {
+        let mut dir = self.dir.clone();
+        dir.extend(scene.split('/').map(component));
+        dir.push(component(&leg.replace('/', "-")));
+        LegDump { dir }
+    }
+}
+
+impl LegDump {
+    /// The leg's folder.
+    pub fn path(&self) -> &Path {
+        &self.dir
+    }
+
+    /// Writes `meta.json`.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written; like all others here, naming it.
+    pub fn meta(&self, meta: &Meta) -> io::Result<()> {
+        let path = self.dir.join("meta.json");
+        let text = serde_json::to_string_pretty(meta)?;
+        create(&path, |_| fs::write(&path, text + "\n"))
+    }
+
+    /// Writes 32-bit unsigned integers.
+    ///
+    /// # Errors
+    ///
+    /// If the shape does not hold as many, or the file cannot be written.
+    pub fn u32(&self, stage: &str, name: &str, shape: &[usize], data: &[u32]) -> io::Result<()> {
+        self.array(stage, name, shape, data)
+    }
+
+    /// Writes 64-bit unsigned integers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::u32`].
+    pub fn u64(&self, stage: &str, name: &str, shape: &[usize], data: &[u64]) -> io::Result<()> {
+        self.array(stage, name, shape, data)
+    }
+
+    /// Writes 32-bit signed integers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::u32`].
+    pub fn i32(&self, stage: &str, name: &str, shape: &[usize], data: &[i32]) -> io::Result<()> {
+        self.array(stage, name, shape, data)
+    }
+
+    /// Writes 32-bit floats.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::u32`].
+    pub fn f32(&self, stage: &str, name: &str, shape: &[usize], data: &[f32]) -> io::Result<()> {
+        self.array(stage, name, shape, data)
+    }
+
+    /// Writes 64-bit floats.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::u32`].
+    pub fn f64(&self, stage: &str, name: &str, shape: &[usize], data: &[f64]) -> io::Result<()> {
+        self.array(stage, name, shape, data)
+    }
+
+    /// Writes linear colours as an array, as EXR (32-bit float, lossless) and as
+    /// PNG (8-bit sRGB, full size, see [`picture::srgb`]).
+    ///
+    /// # Errors
+    ///
+    /// If there is not one colour per pixel, or a file cannot be written.
+    pub fn image(
+        &self,
+        stage: &str,
+        name: &str,
+        size: Size,
+        pixels: &[[f32; 3]],
+    ) -> io::Result<()> {
+        let [width, height] = [size.width, size.height].map(|n| n as usize);
+        let flat = pixels.as_flattened();
+        self.f32(stage, name, &[height, width, 3], flat)?;
+        let path = self.file(stage, name, "exr");
+        create(&path, |_| {
+            exr::prelude::write_rgb_file(&path, width, height, |x, y| {
+                let [r, g, b] = pixels[y * width + x];
+                (r, g, b)
+            })
+            .map_err(io::Error::other)
+        })?;
+        let rgb = flat.iter().map(|&c| picture::srgb(f64::from(c))).collect();
+        let png = picture::png(size.width, size.height, rgb);
+        let path = self.file(stage, name, "png");
+        create(&path, |_| fs::write(&path, png))
+    }
+
+    fn array<T: npyz::AutoSerialize + Copy>(
+        &self,
+        stage: &str,
+        name: &str,
+        shape: &[usize],
+        data: &[T],
+    ) -> io::Result<()> {
+        let path = self.file(stage, name, "npy");
+        let holds = shape.iter().try_fold(1, |n: usize, &m| n.checked_mul(m));
+        if holds != Some(data.len()) {
+            let message = format!(
+                "{}: shape {shape:?} for {} numbers",
+                path.display(),
+                data.len()
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+        }
+        let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
+        create(&path, |file| {
+            let mut buffer = BufWriter::new(file()?);
+            let mut writer = npyz::WriteOptions::new()
+                .default_dtype()
+                .shape(&shape)
+                .writer(&mut buffer)
+                .begin_nd()?;
+            writer.extend(data.iter().copied())?;
+            writer.finish()?;
+            // Dropping the buffer would swallow a full disk.
+            buffer.flush()
+        })
+    }
+
+    fn file(&self, stage: &str, name: &str, extension: &str) -> PathBuf {
+        let name = format!("{}.{extension}", component(name));
+        self.dir.join(component(stage)).join(name)
+    }
+}
+
+/// Makes a file and its folder; an error names the file.
+fn create(
+    path: &Path,
+    write: impl FnOnce(&dyn Fn() -> io::Result<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let folder = path.parent().expect("a file in a folder");
+    fs::create_dir_all(folder)
+        .and_then(|()| write(&|| File::create(path)))
+        .map_err(|e| io::Error::new(e.kind(), format!("{}: {e}", path.display())))
+}
+
+#[cfg(test)]
+mod tests;
