@@ -20,25 +20,30 @@ pub struct Library {
 ///
 /// # Errors
 /// If no device can be made on this machine.
-#[expect(unsafe_code, reason = "the wrapper does not offer device properties")]
 pub fn library() -> Result<Library, EmbreeError> {
-    // SAFETY: the configuration ends in NUL. The handle is checked, used by this
-    // thread alone, and released exactly once.
-    let number = unsafe {
-        let device = rtcNewDevice(CONFIG.as_ptr().cast());
-        if device.is_null() {
-            return Err(EmbreeError::new("new device", "refused on this machine"));
-        }
-        let number = rtcGetDeviceProperty(device, RTCDeviceProperty::VERSION);
-        rtcReleaseDevice(device);
-        number
-    };
     // RTC_DEVICE_PROPERTY_VERSION is 10000 major + 100 minor + patch.
-    let number = u32::try_from(number).map_err(|e| EmbreeError::new("version", e))?;
+    let number = u32::try_from(property(RTCDeviceProperty::VERSION)?)
+        .map_err(|e| EmbreeError::new("version", e))?;
     Ok(Library {
         version: [number / 10_000, number / 100 % 100, number % 100],
         path: loaded_from(),
     })
+}
+
+/// A property of a device that is configured like ours.
+#[expect(unsafe_code, reason = "the wrapper does not offer device properties")]
+fn property(property: RTCDeviceProperty) -> Result<isize, EmbreeError> {
+    // SAFETY: the configuration ends in NUL. The handle is checked, used by this
+    // thread alone, and released exactly once.
+    unsafe {
+        let device = rtcNewDevice(CONFIG.as_ptr().cast());
+        if device.is_null() {
+            return Err(EmbreeError::new("new device", "refused on this machine"));
+        }
+        let value = rtcGetDeviceProperty(device, property);
+        rtcReleaseDevice(device);
+        Ok(value)
+    }
 }
 
 /// The file that this process has mapped as Embree. A line of the table of
@@ -55,7 +60,7 @@ fn loaded_from() -> Option<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use super::library;
+    use super::{RTCDeviceProperty, library, property};
 
     #[test]
     fn the_loaded_library_is_found() {
@@ -65,5 +70,13 @@ mod tests {
             let path = library.path.expect("mapped from a file");
             assert!(path.is_file(), "{} is a file", path.display());
         }
+    }
+
+    #[test]
+    fn the_instruction_set_is_the_same_everywhere() {
+        let wide = |p| property(p).expect("a device");
+        let four = wide(RTCDeviceProperty::NATIVE_RAY4_SUPPORTED);
+        let eight = wide(RTCDeviceProperty::NATIVE_RAY8_SUPPORTED);
+        assert_eq!((four, eight), (1, 0), "SSE2 has four lanes");
     }
 }

@@ -22,12 +22,12 @@ pub(super) fn judge(seen: &mut [Seen], mut disorder: impl FnMut(u32)) -> (u64, u
     seen.sort_unstable_by(|a, b| a.low.total_cmp(&b.low).then(a.prim.cmp(&b.prim)));
     let (mut steps, mut disordered) = (0, 0);
     let mut high = f64::INFINITY; // of all hits so far; none makes no step
-    let mut farthest = f32::NEG_INFINITY; // t of the runs before this one
-    let mut run = f32::NEG_INFINITY; // largest t of this run
+    let mut farthest = f32::NEG_INFINITY; // largest t of the runs before this one
+    let mut reached = f32::NEG_INFINITY; // largest t so far
     for hit in seen {
         if high < hit.low {
             steps += 1;
-            farthest = farthest.max(run);
+            farthest = reached;
         }
         // NaN is before and behind nothing; its depth is reported as outside.
         if hit.t <= farthest {
@@ -39,7 +39,7 @@ pub(super) fn judge(seen: &mut [Seen], mut disorder: impl FnMut(u32)) -> (u64, u
         } else {
             hit.high
         };
-        run = run.max(hit.t);
+        reached = reached.max(hit.t);
     }
     (steps, disordered)
 }
