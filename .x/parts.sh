@@ -154,10 +154,11 @@ unpack_mesa() {
     rm -f "$tmp/mesa"/usr/lib/*/libvulkan.so* # the loader is chosen elsewhere
     for libs in "$tmp/mesa/usr/lib"/*-linux-gnu; do libs=${libs##*/}; done
     ln -s "$libs" "$tmp/mesa/usr/lib/lib" # LLVM looks for its own libraries in ../lib, only
-    sed "s|\"library_path\": \"|&$mesa|" "$tmp/mesa"/usr/share/vulkan/icd.d/lvp_icd*.json \
+    lavapipe=$mesa/usr/lib/$libs/libvulkan_lvp.so
+    sed "s|\(\"library_path\": \"\)[^\"]*|\1$lavapipe|" "$tmp/mesa"/usr/share/vulkan/icd.d/lvp_icd*.json \
         >"$tmp/mesa/lvp_icd.json"
     place "$tmp/mesa" "$mesa"
-    loads "$mesa/usr/lib/$libs/libvulkan_lvp.so" "$mesa/usr/lib/$libs" || { rm -rf "$mesa" && return 1; }
+    loads "$lavapipe" "${lavapipe%/*}" || { rm -rf "$mesa" && return 1; }
 }
 
 # loads LIBRARY FOLDER: whether a program that cargo links would find all that the library needs.
