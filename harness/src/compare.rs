@@ -7,6 +7,7 @@ pub mod image;
 pub mod lists;
 pub mod opaque;
 pub mod order;
+pub mod vertex;
 
 use std::collections::BTreeMap;
 
@@ -82,6 +83,34 @@ impl Judgement {
             self.described
                 .push(format!("{}: {}", cause.name(), words()));
         }
+    }
+
+    /// The judgements of the parts of one thing as one. Parts are judged alike, so
+    /// the first one's class and unit are those of all.
+    pub fn sum(parts: impl IntoIterator<Item = Self>) -> Self {
+        let mut parts = parts.into_iter();
+        let Some(mut total) = parts.next() else {
+            return Self::new(Class::Exact, "items");
+        };
+        for part in parts {
+            total.compared += part.compared;
+            total.unexplained += part.unexplained;
+            total.admitted += part.admitted;
+            for (cause, count) in part.causes {
+                *total.causes.entry(cause).or_default() += count;
+            }
+            let worst = total
+                .error_over_bound
+                .into_iter()
+                .chain(part.error_over_bound);
+            total.error_over_bound = worst.reduce(f64::max);
+            total.marks.extend(part.marks);
+            let room = DESCRIBED_MAX.saturating_sub(total.described.len());
+            total
+                .described
+                .extend(part.described.into_iter().take(room));
+        }
+        total
     }
 
     /// Items that differ, whatever the cause.

@@ -1,6 +1,23 @@
 //! The harness: corpus, legs, comparison, report. The binary `triptych` is a thin
 //! command line over this library.
 
+pub mod calibrate;
 pub mod cause;
+pub mod compare;
+pub mod corpus;
+pub mod digest;
+pub mod dump;
+pub mod embree;
 pub mod error;
+pub mod generate;
+pub mod json;
+pub mod mesh;
+pub mod observe;
+pub mod picture;
+pub mod plan;
+pub mod replay;
 pub mod row;
+pub mod scene;
+pub mod terminal;
+pub mod text;
+pub mod vector;

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use triptych_spec::raster::{Fragment, Setup, sample};
+use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
 
 use crate::cause::Cause;
@@ -19,7 +20,10 @@ pub enum Rule<'a> {
 }
 
 /// Compares the spec's fragments with a leg's; both are sorted here.
-pub fn compare(spec: &[Fragment], other: &[Fragment], width: u32, rule: &Rule<'_>) -> Judgement {
+///
+/// Where there is no fragment, the pixels are what was compared: all are empty.
+pub fn compare(spec: &[Fragment], other: &[Fragment], size: Size, rule: &Rule<'_>) -> Judgement {
+    let width = size.width;
     let (mut spec, mut other) = (spec.to_vec(), other.to_vec());
     spec.sort_unstable();
     other.sort_unstable();
@@ -54,6 +58,10 @@ pub fn compare(spec: &[Fragment], other: &[Fragment], width: u32, rule: &Rule<'_
                 same(&mut judgement, x, y, width, rule);
             }
         }
+    }
+    if judgement.compared == 0 {
+        judgement.unit = "empty pixels";
+        judgement.compared = size.pixels() as u64;
     }
     judgement
 }

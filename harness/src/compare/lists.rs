@@ -59,6 +59,10 @@ pub fn compare(expected: &Expected<'_>, lists: &Lists) -> Judgement {
         compared: needed,
         ..Judgement::new(Class::Structure, "fragments")
     };
+    if needed == 0 {
+        judgement.unit = "empty lists";
+        judgement.compared = lists.heads.len() as u64;
+    }
     membership::judge(expected, lists, &certify(lists), true, &mut judgement);
     // A fragment too many or too few was counted, too: that is no second cause.
     if judgement.differ() == 0 {

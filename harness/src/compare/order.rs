@@ -68,6 +68,10 @@ pub fn compare(spec: &Sorted, other: Option<&Sorted>, width: u32) -> Judgement {
             )
         });
     }
+    if judgement.compared == 0 {
+        judgement.unit = "empty lists";
+        judgement.compared = spec.offsets.len() as u64 - 1;
+    }
     judgement
 }
 

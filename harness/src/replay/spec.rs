@@ -37,6 +37,8 @@ pub struct SpecRun {
 /// Time of each stage.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
+    /// Stages transform, clip and snap.
+    pub vertex: Duration,
     /// Stage cover.
     pub cover: Duration,
     /// Stage opaque.
@@ -68,7 +70,10 @@ impl SpecRun {
         if plan.cover {
             times.cover = timed(|| raster::cover(&primitives, |f| cover.push(f))).1;
         }
-        let mut opaque = Opaque { key: vec![NOTHING; pixels], prim: vec![NOTHING; pixels] };
+        let mut opaque = Opaque {
+            key: vec![NOTHING; pixels],
+            prim: vec![NOTHING; pixels],
+        };
         if plan.opaque {
             (opaque, times.opaque) = timed(|| abuffer::opaque(scene, &primitives));
         }
@@ -85,7 +90,12 @@ impl SpecRun {
             lists,
             sorted,
             image,
-            times: Times { build, sort, resolve, ..times },
+            times: Times {
+                build,
+                sort,
+                resolve,
+                ..times
+            },
             primitives,
         })
     }
@@ -105,7 +115,11 @@ impl SpecRun {
 
 /// Colour of each row of `prims`.
 pub fn faces(scene: &Scene, primitives: &Primitives) -> Vec<[f32; 4]> {
-    primitives.source.iter().map(|s| scene.triangles[*s as usize].colour).collect()
+    primitives
+        .source
+        .iter()
+        .map(|s| scene.triangles[*s as usize].colour)
+        .collect()
 }
 
 /// A result and how long it took.

@@ -15,6 +15,8 @@ pub struct Expect {
     pub fragments: Option<u64>,
     /// Length of the longest list.
     pub layers_max: Option<u64>,
+    /// The longest list has at least so many fragments.
+    pub layers_min: Option<u64>,
     /// Pixels with an opaque surface.
     pub opaque: Option<u64>,
     /// Covered pairs of pixel and triangle, opaque or not, hidden or not.
@@ -49,6 +51,15 @@ pub struct List {
     pub prims: Vec<u32>,
 }
 
+impl Expect {
+    /// How many statements the scene makes.
+    pub fn stated(&self) -> u64 {
+        let numbers = [self.fragments, self.layers_max, self.opaque, self.covered];
+        let numbers = numbers.iter().flatten().count();
+        (numbers + self.cover.len() + self.lists.len()) as u64
+    }
+}
+
 /// What of `expect` the spec's result contradicts, one line each; empty if
 /// nothing.
 pub fn check(
@@ -59,33 +70,27 @@ pub fn check(
     sorted: &Sorted,
 ) -> Vec<String> {
     let mut wrong = Vec::new();
-    let mut number = |what: &str, expected: Option<u64>, got: usize| {
-        if expected.is_some_and(|e| e != got as u64) {
-            let expected = expected.unwrap_or_default();
-            wrong.push(format!("{what}: {got}, expected {expected}"));
-        }
-    };
     let longest = sorted.offsets.windows(2).map(|w| w[1] - w[0]).max();
+    let longest = u64::from(longest.unwrap_or(0));
     let hidden = opaque.prim.iter().filter(|p| **p != NOTHING).count();
     let counts = coverage(primitives);
-    number("fragments", expect.fragments, sorted.fragments.len());
-    number(
-        "layers_max",
-        expect.layers_max,
-        longest.unwrap_or(0) as usize,
-    );
-    number("opaque", expect.opaque, hidden);
-    number(
-        "covered",
-        expect.covered,
-        counts.iter().map(|c| *c as usize).sum(),
-    );
-    wrong.extend(
-        expect
-            .cover
-            .iter()
-            .filter_map(|c| check_cover(c, scene, &counts)),
-    );
+    let covered = counts.iter().map(|c| u64::from(*c)).sum();
+    let numbers = [
+        ("fragments", expect.fragments, sorted.fragments.len() as u64),
+        ("layers_max", expect.layers_max, longest),
+        ("opaque", expect.opaque, hidden as u64),
+        ("covered", expect.covered, covered),
+    ];
+    for (what, expected, got) in numbers {
+        if let Some(expected) = expected.filter(|e| *e != got) {
+            wrong.push(format!("{what}: {got}, expected {expected}"));
+        }
+    }
+    if let Some(least) = expect.layers_min.filter(|least| longest < *least) {
+        wrong.push(format!("layers_min: {longest}, expected {least} or more"));
+    }
+    let cover = |c: &Cover| check_cover(c, scene, &counts);
+    wrong.extend(expect.cover.iter().filter_map(cover));
     let list = |l: &List| check_list(l, scene, primitives, sorted);
     wrong.extend(expect.lists.iter().filter_map(list));
     wrong

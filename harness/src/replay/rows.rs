@@ -1,0 +1,115 @@
+//! Rows of one scene, and what goes with them into the report.
+
+use std::time::Duration;
+
+use crate::cause::Cause;
+use crate::compare::Judgement;
+use crate::observe::Observed;
+use crate::row::{Class, Row};
+
+/// Rows as they come, with the differences that they stand for.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    scene: String,
+    family: String,
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// First differences of each row, in words.
+    pub described: Vec<String>,
+    /// Pixels that differ, over all rows.
+    pub marks: Vec<(u32, Cause)>,
+}
+
+impl Rows {
+    /// No rows yet.
+    pub fn new(scene: &str, family: &str) -> Self {
+        Self {
+            scene: scene.into(),
+            family: family.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds the outcome of a comparison.
+    pub fn add<A, B, T, U>(
+        &mut self,
+        stage: &str,
+        a: &Observed<A, T>,
+        b: &Observed<B, U>,
+        judgement: Judgement,
+    ) {
+        let described = judgement.described.iter();
+        self.described
+            .extend(described.map(|words| format!("{stage}, {}: {words}", b.label)));
+        self.marks.extend(&judgement.marks);
+        let mut note = judgement.note.clone();
+        if let (true, Some(first)) = (note.is_empty(), judgement.described.first()) {
+            note.clone_from(first);
+        }
+        self.rows.push(Row {
+            unit: judgement.unit.into(),
+            compared: judgement.compared,
+            differ: judgement.differ(),
+            unexplained: judgement.unexplained,
+            admitted: judgement.admitted,
+            admitted_budget: judgement.admitted_budget,
+            error_over_bound: judgement.error_over_bound,
+            causes: judgement.causes,
+            ms_a: a.time.map(ms),
+            ms_b: b.time.map(ms),
+            note,
+            ..self.blank(stage, &a.label, &b.label, judgement.class)
+        });
+    }
+
+    /// Adds a row that compared nothing, and why.
+    pub fn skip(&mut self, stage: &str, a: &str, b: &str, class: Class, reason: String) {
+        let skipped = Some(reason);
+        self.rows.push(Row {
+            skipped,
+            ..self.blank(stage, a, b, class)
+        });
+    }
+
+    /// Adds a row for a leg that failed: a lost device has a cause of its own, and
+    /// anything else is unexplained.
+    pub fn fail(&mut self, stage: &str, a: &str, b: &str, cause: Option<Cause>, reason: String) {
+        let row = self.blank(stage, a, b, Class::Exact);
+        self.described.push(format!("{stage}, {b}: {reason}"));
+        self.rows.push(Row {
+            differ: 1,
+            unexplained: u64::from(cause.is_none()),
+            causes: cause.into_iter().map(|c| (c, 1)).collect(),
+            note: reason,
+            ..row
+        });
+    }
+
+    fn blank(&self, stage: &str, a: &str, b: &str, class: Class) -> Row {
+        Row {
+            scene: self.scene.clone(),
+            family: self.family.clone(),
+            stage: stage.into(),
+            a: a.into(),
+            b: b.into(),
+            class,
+            unit: String::new(),
+            compared: 0,
+            differ: 0,
+            causes: std::collections::BTreeMap::new(),
+            unexplained: 0,
+            admitted: 0,
+            admitted_budget: None,
+            error_over_bound: None,
+            skipped: None,
+            cached: false,
+            ms_a: None,
+            ms_b: None,
+            note: String::new(),
+        }
+    }
+}
+
+fn ms(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
