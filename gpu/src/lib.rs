@@ -11,4 +11,5 @@ pub mod error;
 pub mod frame;
 pub mod kernel;
 pub mod raster;
+pub mod vertex;
 pub mod wgsl;

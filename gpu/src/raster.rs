@@ -366,7 +366,7 @@ fn rows_within([top, bottom]: [i64; 2], band: Band) -> u32 {
     u32::try_from(bottom - top + 1).unwrap_or(0)
 }
 
-fn uniform(gpu: &Gpu, frame: &Frame) -> wgpu::Buffer {
+pub(crate) fn uniform(gpu: &Gpu, frame: &Frame) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("frame"),
         size: size_of::<Frame>() as u64,

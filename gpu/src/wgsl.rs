@@ -58,6 +58,7 @@ impl Sources {
             "place",
             "raster",
             "triangle",
+            "vertex",
             "walk",
             "wide",
             "wide_native",

@@ -42,6 +42,15 @@ pub trait Real: Copy {
     /// Sum of products of given numbers: the coefficients are rounded to `f32`
     /// once, the terms added in any order, fused or not.
     fn sum_of_products(coefficients: [f64; 4], terms: [f64; 4]) -> Self;
+    /// `self / (self - other)` for numbers that an evaluation sees with different
+    /// signs, so that it gets a number in `[0, 1]`, but for rounding. Where WGSL leaves
+    /// the quotient undefined, a kernel takes any number of that range.
+    fn fraction(self, other: Self) -> Self;
+    /// This number, where an evaluation may just as well take `other`, another way
+    /// to the same result.
+    fn or(self, other: Self) -> Self;
+    /// Whether two numbers compare in every evaluation as they do here.
+    fn certainly_differs(self, other: Self) -> bool;
 }
 
 impl Real for f64 {
@@ -66,6 +75,20 @@ impl Real for f64 {
     fn sum_of_products(c: [f64; 4], t: [f64; 4]) -> Self {
         c[0] * t[0] + c[1] * t[1] + c[2] * t[2] + c[3] * t[3]
     }
+    fn fraction(self, other: Self) -> Self {
+        self / (self - other)
+    }
+    fn or(self, _: Self) -> Self {
+        self
+    }
+    fn certainly_differs(self, other: Self) -> bool {
+        self != other
+    }
+}
+
+fn flushed_product(c: f64, t: f64) -> f64 {
+    let term = if t.abs() < TINY { (c * t).abs() } else { 0.0 };
+    TINY * (t.abs() + 2.0) + term
 }
 
 /// A number and the largest error of its `f32` evaluation.
@@ -137,7 +160,8 @@ impl Real for Bounded {
         let value = f64::sum_of_products(c, t);
         let absolute: f64 = c.iter().zip(t).map(|(c, t)| (c * t).abs()).sum();
         // Rounding of the coefficient, the product, three additions.
-        let flushed: f64 = t.iter().map(|t| TINY * (t.abs() + 2.0)).sum();
+        // Flushed: the coefficient, the product, the sum; a term that is subnormal.
+        let flushed: f64 = c.iter().zip(t).map(|(c, t)| flushed_product(*c, t)).sum();
         let largest = c.iter().chain(&t).fold(absolute, |m, x| m.max(x.abs()));
         let bound = gamma(5) * absolute + flushed;
         let defined = largest + bound <= f64::from(f32::MAX);
@@ -145,5 +169,31 @@ impl Real for Bounded {
             value,
             bound: if defined { bound } else { f64::INFINITY },
         }
+    }
+    fn fraction(self, other: Self) -> Self {
+        let quotient = self.div(self.sub(other));
+        // Signs that only an f32 evaluation sees differ lead outside [0, 1].
+        let value = if quotient.value.is_nan() {
+            0.0
+        } else {
+            quotient.value.clamp(0.0, 1.0)
+        };
+        let strayed = quotient.bound + (quotient.value - value).abs();
+        Self {
+            value,
+            // The range itself is a bound, with the roundings of a difference and a
+            // quotient; `min` ignores a NaN.
+            bound: (value.max(1.0 - value) + 4.0 * U).min(strayed),
+        }
+    }
+    fn or(self, other: Self) -> Self {
+        let apart = (self.value - other.value).abs();
+        Self {
+            value: self.value,
+            bound: self.bound.max(other.bound + apart),
+        }
+    }
+    fn certainly_differs(self, other: Self) -> bool {
+        (self.value - other.value).abs() > self.bound + other.bound
     }
 }

@@ -147,56 +147,83 @@ pub fn clip<T: Real>(scene: &Scene, positions: &[Position<T>]) -> Polygons<T> {
     };
     for triangle in &scene.triangles {
         let corners = triangle.vertices.map(|v| positions[v as usize]);
-        clip_triangle(&planes, corners, &mut polygons.corners);
+        let polygon = clip_triangle(&planes, corners, |_, plain| plain);
+        polygons.corners.extend(polygon);
         polygons.offsets.push(row(polygons.corners.len()));
     }
     polygons
 }
 
-fn clip_triangle<T: Real>(
+/// Clips one triangle; empty if nothing is left.
+///
+/// Every branch asks `decide`, with the number whose sign decides and with what
+/// that sign says: whoever knows that an `f32` evaluation may see the other sign
+/// can follow the other branch.
+pub fn clip_triangle<T: Real>(
     planes: &[Plane; 6],
     corners: [Position<T>; 3],
-    out: &mut Vec<Position<T>>,
-) {
+    mut decide: impl FnMut(T, bool) -> bool,
+) -> Vec<Position<T>> {
     let mut polygon = corners.to_vec();
+    let mut sides = Vec::with_capacity(CORNERS_MAX);
     for plane in planes {
-        if polygon.iter().any(|p| plane.distance(*p).value() < 0.0) {
-            polygon = cut(*plane, &polygon);
+        sides.clear();
+        sides.extend(polygon.iter().map(|p| {
+            let distance = plane.distance(*p);
+            let inside = decide(distance, distance.value() >= 0.0);
+            Side { distance, inside }
+        }));
+        if sides.iter().any(|side| !side.inside) {
+            polygon = cut(&polygon, &sides);
         }
     }
-    debug_assert!(
-        polygon.len() <= CORNERS_MAX,
-        "six planes add six corners at most"
-    );
     // Fewer than three corners are left only of a triangle without area.
-    if polygon.len() >= 3 && polygon.iter().all(|p| p[3].value() > 0.0) {
-        out.extend(polygon);
-    }
+    let visible = polygon.len() >= 3 && polygon.iter().all(|p| decide(p[3], p[3].value() > 0.0));
+    if visible { polygon } else { Vec::new() }
 }
 
-fn cut<T: Real>(plane: Plane, polygon: &[Position<T>]) -> Vec<Position<T>> {
+/// Where a corner lies with respect to a plane.
+#[derive(Clone, Copy)]
+struct Side<T> {
+    distance: T,
+    inside: bool,
+}
+
+fn cut<T: Real>(polygon: &[Position<T>], sides: &[Side<T>]) -> Vec<Position<T>> {
     let mut kept = Vec::with_capacity(CORNERS_MAX);
-    for (i, &a) in polygon.iter().enumerate() {
-        let b = polygon[(i + 1) % polygon.len()];
-        let (da, db) = (plane.distance(a), plane.distance(b));
-        let (a_inside, b_inside) = (da.value() >= 0.0, db.value() >= 0.0);
-        if a_inside {
+    for (i, (&a, &side_a)) in polygon.iter().zip(sides).enumerate() {
+        let next = (i + 1) % polygon.len();
+        let (b, side_b) = (polygon[next], sides[next]);
+        if side_a.inside {
             kept.push(a);
         }
-        if a_inside != b_inside {
-            kept.push(if precedes(&a, &b) {
-                crossing(a, da, b, db)
-            } else {
-                crossing(b, db, a, da)
-            });
+        if side_a.inside != side_b.inside {
+            kept.push(canonical_crossing(a, side_a.distance, b, side_b.distance));
         }
     }
     kept
 }
 
+/// The same point whichever of two neighbours asks.
+fn canonical_crossing<T: Real>(a: Position<T>, da: T, b: Position<T>, db: T) -> Position<T> {
+    let (first, second) = if precedes(&a, &b) {
+        ((a, da), (b, db))
+    } else {
+        ((b, db), (a, da))
+    };
+    let plain = crossing(first.0, first.1, second.0, second.1);
+    // An f32 evaluation orders the ends alike if their first components, as far as
+    // they may stray, leave no doubt; otherwise it may start from the other end.
+    if a[0].certainly_differs(b[0]) {
+        return plain;
+    }
+    let other = crossing(second.0, second.1, first.0, first.1);
+    [0, 1, 2, 3].map(|i| plain[i].or(other[i]))
+}
+
 /// The point between `a` and `b` where the distance is zero.
 fn crossing<T: Real>(a: Position<T>, da: T, b: Position<T>, db: T) -> Position<T> {
-    let t = da.div(da.sub(db));
+    let t = da.fraction(db);
     [0, 1, 2, 3].map(|i| a[i].add(t.mul(b[i].sub(a[i]))))
 }
 

@@ -1,0 +1,147 @@
+//! Whether a rounded coordinate can come from a number within a bound.
+//!
+//! Rounding is monotonic, so an observed integer is conforming if and only if the
+//! numbers that round to it come within the bound of the spec's number. Their
+//! distance to it is the error that the observation proves. The numbers that give
+//! the integer `k`:
+//!
+//! - x, y: `[k - 1/2, k + 1/2]`. The guard's ends take all that lies beyond, because
+//!   clamping follows. Rounding in `f32` is exact.
+//! - z, on the spec's scale of `D = 2^31 - 1`: `[k D / 2^31, k + 1)`. Truncation
+//!   accounts for `[k, k + 1)`; and where the spec multiplies by D, a kernel
+//!   multiplies by `f32(D) = 2^31`, so that its number is larger by the factor
+//!   `2^31 / D`. Saturation gives 0 everything below 1, and D everything above.
+
+use triptych_spec::bound::Bounded;
+use triptych_spec::scene::Size;
+use triptych_spec::vertex::{DEPTH_ONE, GUARD, Position, grid_position, guard_origin};
+
+use super::{Figures, Kind};
+
+/// The spec's numbers are `f64` and differ from the real ones that the bounds are
+/// about: by under 2^-53 where the bound has 2^-23 or more, operation by operation.
+const SLACK: f64 = 1.0 + 1.0 / (1 << 20) as f64;
+
+/// Holds polygons of one target against their bounds.
+pub struct Judge {
+    bits: u32,
+    /// The integers that an axis may have.
+    ranges: [[i32; 2]; 3],
+}
+
+impl Judge {
+    /// For a target with so many sub-pixel bits.
+    pub fn new(size: Size, bits: u32) -> Self {
+        let guard = |side| {
+            let first = guard_origin(side);
+            [first << bits, (first + GUARD) << bits]
+        };
+        Self {
+            bits,
+            ranges: [guard(size.width), guard(size.height), [0, DEPTH_ONE]],
+        }
+    }
+
+    /// Whether an observed polygon conforms to an outcome.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn polygon(
+        &self,
+        expected: &[Position<Bounded>],
+        observed: &[[i32; 3]],
+    ) -> Result<Figures, Kind> {
+        if expected.len() != observed.len() {
+            return Err(Kind::Count {
+                expected: expected.len(),
+                observed: observed.len(),
+            });
+        }
+        let mut figures = Figures::default();
+        for (corner, (position, observed)) in expected.iter().zip(observed).enumerate() {
+            let judged = self.corner(*position, *observed);
+            figures.merge(&judged.map_err(|(axis, number)| Kind::Corner {
+                corner,
+                axis,
+                value: number.value,
+                bound: number.bound,
+                observed: observed[axis],
+            })?);
+        }
+        Ok(figures)
+    }
+
+    /// The number of corners outside, of polygons with equally many.
+    pub fn outside(&self, expected: &[Position<Bounded>], observed: &[[i32; 3]]) -> usize {
+        let pairs = expected.iter().zip(observed);
+        pairs
+            .filter(|(e, o)| self.corner(**e, **o).is_err())
+            .count()
+    }
+
+    /// Fails with the first axis that is outside, and what was expected there.
+    fn corner(
+        &self,
+        position: Position<Bounded>,
+        observed: [i32; 3],
+    ) -> Result<Figures, (usize, Bounded)> {
+        let mut figures = Figures::default();
+        let grid = grid_position(position, self.bits);
+        for (axis, (number, observed)) in grid.into_iter().zip(observed).enumerate() {
+            let error = self.error(axis, number.value, observed);
+            // An integer that the axis does not have is wrong whatever the bound.
+            if error > number.bound * SLACK || error.is_infinite() {
+                return Err((axis, number));
+            }
+            if axis < 2 && observed != self.rounded(axis, number.value) {
+                figures.moved = 1;
+            }
+            if number.bound.is_infinite() {
+                figures.unbounded = 1;
+                continue;
+            }
+            figures.error_over_bound = figures.error_over_bound.max(error / number.bound);
+            if axis == 2 {
+                figures.error_keys = figures.error_keys.max(error);
+            } else {
+                figures.error_subpixels = figures.error_subpixels.max(error);
+                figures.bound_subpixels = figures.bound_subpixels.max(number.bound);
+            }
+        }
+        Ok(figures)
+    }
+
+    /// How far the nearest number that rounds to `observed` is from `value`; infinite
+    /// if there is none.
+    fn error(&self, axis: usize, value: f64, observed: i32) -> f64 {
+        let [low, high] = self.ranges[axis];
+        if !(low..=high).contains(&observed) {
+            return f64::INFINITY;
+        }
+        let k = f64::from(observed);
+        let (least, most) = match axis {
+            2 => (k * (f64::from(DEPTH_ONE) / 2_f64.powi(31)), k + 1.0),
+            _ => (k - 0.5, k + 0.5),
+        };
+        let least = if observed > low {
+            least
+        } else {
+            f64::NEG_INFINITY
+        };
+        let most = if observed < high { most } else { f64::INFINITY };
+        match value.is_finite() {
+            true => (least - value).max(value - most).max(0.0),
+            false => f64::INFINITY,
+        }
+    }
+
+    /// What the spec's `snap` makes of x or y.
+    fn rounded(&self, axis: usize, value: f64) -> i32 {
+        let [low, high] = self.ranges[axis];
+        #[expect(clippy::cast_possible_truncation, reason = "a whole number in range")]
+        let rounded = value
+            .round_ties_even()
+            .clamp(f64::from(low), f64::from(high)) as i32;
+        rounded
+    }
+}

@@ -1,0 +1,77 @@
+//! Stage `transform` by itself: every component inside its bound.
+
+use triptych_spec::bound::Bounded;
+use triptych_spec::scene::Scene;
+use triptych_spec::vertex::{self, Position};
+
+use super::TOLD_MAX;
+
+/// What comparing positions gave. Every difference has cause
+/// [`crate::cause::Cause::Vertex`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransformReport {
+    /// Vertices compared.
+    pub vertices: u64,
+    /// Vertices with a component outside its bound; all, if the counts differ.
+    pub outside: u64,
+    /// The first [`TOLD_MAX`] of them.
+    pub told: Vec<Stray>,
+    /// Vertices with a component on which WGSL promises nothing.
+    pub unbounded: u64,
+    /// Largest error over its bound.
+    pub error_over_bound: f64,
+}
+
+/// A component outside its bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stray {
+    /// Row in [`Scene::vertices`].
+    pub vertex: usize,
+    /// 0 to 3 for x, y, z, w.
+    pub component: usize,
+    /// What it should be.
+    pub expected: Bounded,
+    /// What it is.
+    pub observed: f32,
+}
+
+/// Compares a device's positions, one for each of [`Scene::vertices`], with the
+/// spec's.
+pub fn compare_transform(scene: &Scene, observed: &[[f32; 4]]) -> TransformReport {
+    let expected: Vec<Position<Bounded>> = vertex::transform(scene);
+    let mut report = TransformReport {
+        vertices: expected.len() as u64,
+        ..TransformReport::default()
+    };
+    if expected.len() != observed.len() {
+        report.outside = expected.len().max(observed.len()) as u64;
+        return report;
+    }
+    for (vertex, (expected, observed)) in expected.iter().zip(observed).enumerate() {
+        let mut strays = (0..4).filter(|&i| !admits(expected[i], observed[i]));
+        if let Some(component) = strays.next() {
+            report.outside += 1;
+            if report.told.len() < TOLD_MAX {
+                report.told.push(Stray {
+                    vertex,
+                    component,
+                    expected: expected[component],
+                    observed: observed[component],
+                });
+            }
+        }
+        report.unbounded += u64::from(expected.iter().any(|e| e.bound.is_infinite()));
+        for (e, o) in expected.iter().zip(observed) {
+            let ratio = (f64::from(*o) - e.value).abs() / e.bound;
+            if ratio.is_finite() {
+                report.error_over_bound = report.error_over_bound.max(ratio);
+            }
+        }
+    }
+    report
+}
+
+/// Where nothing is promised, NaN and infinity conform as well.
+fn admits(expected: Bounded, observed: f32) -> bool {
+    expected.bound.is_infinite() || expected.admits(f64::from(observed))
+}

@@ -1,0 +1,60 @@
+//! Reports in words.
+
+use std::fmt;
+
+use super::{Difference, Kind, VertexReport};
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "triangle {}: ", self.triangle)?;
+        match &self.kind {
+            Kind::Count { expected, observed } => {
+                write!(f, "{observed} corners after clipping, not {expected}")
+            }
+            Kind::Corner {
+                corner,
+                axis,
+                value,
+                bound,
+                observed,
+            } => {
+                let axis = ["x", "y", "z"][*axis];
+                write!(
+                    f,
+                    "corner {corner}: {axis} is {observed}, not {value} within {bound:.3e}"
+                )
+            }
+            Kind::NoOutcome { outcomes, observed } => write!(
+                f,
+                "its {observed} corners match none of {outcomes} ways to clip it"
+            ),
+        }
+    }
+}
+
+/// One line for people.
+impl fmt::Display for VertexReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let figures = &self.figures;
+        write!(
+            f,
+            "{} corners, {} moved, off by up to {:.3} of at most {:.3} sub-pixels and {:.0} keys \
+             ({:.2} of the bound)",
+            self.corners,
+            figures.moved,
+            figures.error_subpixels,
+            figures.bound_subpixels,
+            figures.error_keys,
+            figures.error_over_bound,
+        )?;
+        let counts = [
+            (self.decisions, "triangles with an uncertain branch"),
+            (self.undecided, "triangles undecided"),
+            (figures.unbounded, "corners unbounded"),
+        ];
+        for (count, what) in counts.iter().filter(|(count, _)| *count > 0) {
+            write!(f, ", {count} {what}")?;
+        }
+        Ok(())
+    }
+}
