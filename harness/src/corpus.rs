@@ -30,14 +30,17 @@ pub fn root() -> PathBuf {
     }
 }
 
-/// Where packages' meshes lie: `$TRIPTYCH_NATIVE/meshes`, else `.native/meshes`
-/// beside the corpus.
-pub fn meshes() -> PathBuf {
-    let native = match std::env::var_os("TRIPTYCH_NATIVE") {
+/// What set-up installed: `$TRIPTYCH_NATIVE`, else `.native` beside the corpus.
+pub fn native() -> PathBuf {
+    match std::env::var_os("TRIPTYCH_NATIVE") {
         Some(native) => native.into(),
         None => root().with_file_name(".native"),
-    };
-    native.join("meshes")
+    }
+}
+
+/// Where packages' meshes lie.
+pub fn meshes() -> PathBuf {
+    native().join("meshes")
 }
 
 /// Every scene of the corpus, by name.

@@ -3,6 +3,7 @@
 
 pub mod calibrate;
 pub mod cause;
+pub mod cli;
 pub mod compare;
 pub mod corpus;
 pub mod digest;

@@ -1,3 +1,7 @@
 //! The command `triptych`.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    triptych_harness::cli::main()
+}

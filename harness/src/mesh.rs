@@ -6,6 +6,7 @@
 //! limited by [`BYTES_MAX`].
 
 mod hair;
+pub mod lock;
 mod mtl;
 mod obj;
 mod ply;

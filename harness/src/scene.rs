@@ -153,6 +153,15 @@ impl Parsed<'_> {
     }
 }
 
+/// What a scene is for, without loading its meshes.
+///
+/// # Errors
+/// A file that cannot be read or parsed.
+pub fn purpose(path: &Path) -> Result<String, InputError> {
+    let bytes = crate::mesh::read(path, FILE_MAX)?;
+    Ok(parse(path, utf8(path, &bytes)?)?.file.purpose.0)
+}
+
 fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
     let starts = text.match_indices('\n').map(|(at, _)| at + 1);
     let lines: Vec<usize> = std::iter::once(0).chain(starts).collect();

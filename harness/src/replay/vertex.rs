@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use triptych_gpu::error::GpuError;
+use triptych_gpu::raster::Path;
 use triptych_gpu::vertex;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
@@ -31,9 +32,10 @@ pub fn run(
     scene: &Scene,
     spec: &Observed<Spec, SpecRun>,
     adapter: &Adapter,
+    path: Path,
     rows: Option<&mut Rows>,
 ) -> Result<Option<Primitives>, GpuError> {
-    let label = format!("gpu@{}", adapter.gpu.name);
+    let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
     if scene.triangles.is_empty() {
         if let Some(rows) = rows {
             let reason = "plan: no triangles".to_owned();

@@ -134,18 +134,10 @@ fn find_package(
     parsed: &Parsed,
     package: &Spanned<String>,
 ) -> Result<(PathBuf, String), LoadError> {
-    let lock = corpus::root().join("meshes.lock");
-    let bytes = mesh::read(&lock, super::FILE_MAX)?;
-    let text = super::utf8(&lock, &bytes)?;
-    let rows = text.lines().filter(|l| !l.starts_with('#'));
-    let rows: Vec<Vec<&str>> = rows.map(|l| l.split_whitespace().collect()).collect();
+    let rows = mesh::lock::read()?;
     let name = package.get_ref().as_str();
-    let Some(row) = rows.iter().find(|r| r.first() == Some(&name)) else {
-        let known: Vec<&str> = rows.iter().filter_map(|r| r.first().copied()).collect();
-        let message = format!(
-            "`{name}` is not in corpus/meshes.lock, which has {}",
-            known.join(", ")
-        );
+    let Some(row) = rows.iter().find(|r| r.name == name) else {
+        let message = format!("`{name}` is no row of corpus/meshes.lock");
         return Err(parsed.error(package.span(), message).into());
     };
     let path = corpus::meshes().join(name);
@@ -155,8 +147,7 @@ fn find_package(
             command: INSTALL,
         });
     }
-    let pinned = row.last().copied().unwrap_or_default();
-    Ok((path, pinned.to_owned()))
+    Ok((path, row.sha256.clone()))
 }
 
 /// Sums over the meshes.

@@ -1,0 +1,81 @@
+//! The command line. Exit code 0: all agree. 1: something diverges. 2: could not
+//! run.
+
+mod doctor;
+mod list;
+mod plan;
+mod replay;
+mod report;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// What a command came to.
+pub enum Verdict {
+    /// Everything that was compared agrees.
+    Agree,
+    /// Something diverges.
+    Diverge,
+}
+
+#[derive(Parser)]
+#[command(
+    name = "triptych",
+    version,
+    about = "Replays scenes through a scalar spec, WGSL on every adapter, and Embree, and \
+             accounts for every difference",
+    after_help = "Examples:\n  \
+        triptych replay                     the whole corpus, all legs, all adapters\n  \
+        triptych replay raster/ --leg gpu   the raster family on GPUs alone\n  \
+        triptych replay shape.obj           a mesh of your own\n  \
+        triptych plan abuffer/sponza        what a scene needs, and what it skips\n\n\
+        Exit code 0: all agree. 1: something diverges. 2: could not run."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// What is installed, which adapters there are, and what is missing
+    Doctor,
+    /// The scenes of the corpus
+    List(list::Args),
+    /// What a scene needs, and what it skips
+    Plan(plan::Args),
+    /// Replay scenes through all legs and compare them
+    Replay(Box<replay::Args>),
+    /// Merge the JSON lines of several runs into one report
+    Report(report::Args),
+}
+
+/// Runs the command line that the process was given.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Doctor => doctor::run(),
+        Command::List(args) => list::run(&args),
+        Command::Plan(args) => plan::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Report(args) => report::run(&args),
+    };
+    match result {
+        Ok(Verdict::Agree) => ExitCode::SUCCESS,
+        Ok(Verdict::Diverge) => ExitCode::from(1),
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line: the user's mistake needs no backtrace.
+            eprintln!("triptych: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Somebody piped us into `head`; that is no failure.
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    let io = error
+        .chain()
+        .find_map(|e| e.downcast_ref::<std::io::Error>());
+    io.is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+}

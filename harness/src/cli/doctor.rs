@@ -1,0 +1,110 @@
+//! `triptych doctor`.
+
+use std::io::Write;
+
+use triptych_gpu::wgsl::Sources;
+
+use super::Verdict;
+use crate::calibrate::Grid;
+use crate::replay::gpu::Adapter;
+use crate::{corpus, embree};
+
+/// What the project found out about drivers the hard way.
+const KNOWN: [(&str, &str); 2] = [
+    (
+        "llvmpipe",
+        "drops side effects of fragments that a later opaque colour write covers",
+    ),
+    (
+        "-gl",
+        "naga's GLSL does not compile the sample mask as a fragment input",
+    ),
+];
+
+pub fn run() -> anyhow::Result<Verdict> {
+    let mut out = std::io::stdout().lock();
+    let mut well = adapters(&mut out)?;
+    well &= embree(&mut out)?;
+    well &= meshes(&mut out)?;
+    parts(&mut out)?;
+    let last = if well {
+        "All legs can run."
+    } else {
+        "Something is missing; `./x setup` installs it."
+    };
+    writeln!(out, "\n{last}")?;
+    Ok(if well {
+        Verdict::Agree
+    } else {
+        Verdict::Diverge
+    })
+}
+
+fn adapters(out: &mut impl Write) -> anyhow::Result<bool> {
+    writeln!(out, "Adapters")?;
+    let adapters = Adapter::open_all(&[], &Sources::shipped(false))?;
+    if adapters.is_empty() {
+        writeln!(out, "  none; `./x setup` installs two software drivers")?;
+    }
+    for Adapter { gpu, grid, .. } in &adapters {
+        let info = &gpu.info;
+        writeln!(out, "  {}: {}, {:?}", gpu.name, info.name, info.backend)?;
+        writeln!(out, "    driver {} {}", info.driver, info.driver_info)?;
+        let limit = gpu.binding_limit() >> 20;
+        let int64 = if gpu.has_int64() {
+            "64-bit integers"
+        } else {
+            "no 64-bit integers"
+        };
+        writeln!(out, "    binding at most {limit} MiB, {int64}")?;
+        match grid {
+            Grid::Bits(bits) => writeln!(out, "    sub-pixel grid 1/{}", 1 << bits)?,
+            Grid::Unknown => writeln!(out, "    sub-pixel grid unknown: compared by a band")?,
+        }
+        for (_, bug) in KNOWN.iter().filter(|(name, _)| gpu.name.contains(name)) {
+            writeln!(out, "    known: {bug}")?;
+        }
+    }
+    Ok(!adapters.is_empty())
+}
+
+fn embree(out: &mut impl Write) -> anyhow::Result<bool> {
+    writeln!(out, "Embree")?;
+    match embree::library() {
+        Ok(library) => {
+            writeln!(out, "  {library}")?;
+            Ok(true)
+        }
+        Err(error) => {
+            writeln!(out, "  {error}")?;
+            Ok(false)
+        }
+    }
+}
+
+fn meshes(out: &mut impl Write) -> anyhow::Result<bool> {
+    let folder = corpus::meshes();
+    writeln!(out, "Meshes in {}", folder.display())?;
+    let mut all = true;
+    for mesh in crate::mesh::lock::read()? {
+        let state = if folder.join(&mesh.name).is_file() {
+            "present"
+        } else {
+            "missing"
+        };
+        all &= state == "present";
+        writeln!(out, "  {state}  {} ({})", mesh.name, mesh.origin)?;
+    }
+    Ok(all)
+}
+
+/// What set-up noted about the parts that it installed or found.
+fn parts(out: &mut impl Write) -> anyhow::Result<()> {
+    if let Ok(versions) = std::fs::read_to_string(corpus::native().join("versions")) {
+        writeln!(out, "Parts")?;
+        for line in versions.lines() {
+            writeln!(out, "  {line}")?;
+        }
+    }
+    Ok(())
+}

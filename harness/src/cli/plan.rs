@@ -1,0 +1,33 @@
+//! `triptych plan`.
+
+use std::io::Write;
+
+use super::Verdict;
+use crate::corpus;
+use crate::plan::Plan;
+use crate::scene::load_entry;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Scenes, as for `replay`
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<String>,
+    /// Patterns are whole names
+    #[arg(long)]
+    exact: bool,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let entries = corpus::list(&corpus::root())?;
+    let mut out = std::io::stdout().lock();
+    for entry in corpus::select(&entries, &args.scenes, args.exact)? {
+        let loaded = load_entry(&entry, None)?;
+        let triangles = loaded.scene.triangles.len();
+        writeln!(out, "{}: {triangles} triangles", entry.name)?;
+        for pass in Plan::new(&loaded.scene, true).passes {
+            let what = if pass.runs { "run " } else { "skip" };
+            writeln!(out, "  {what}  {:10}  {}", pass.name, pass.reason)?;
+        }
+    }
+    Ok(Verdict::Agree)
+}
