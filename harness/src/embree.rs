@@ -4,8 +4,11 @@
 //! Embree reports along them is collected ([`scene`]). Embree computes in `f32`;
 //! how far that can be trusted is derived, not measured ([`bound`]).
 //!
-//! The embree4-rs wrapper serves for building and tracing. Two calls are not in
-//! it: the library's version ([`library`]), and nothing else.
+//! The embree4-rs wrapper serves for building and tracing; only the library's
+//! version ([`mod@library`]) needs the bindings below it. Those are older than the
+//! library: Embree 4.4 writes an accepted hit past the end of the wrapper's hit
+//! structure. Here no hit is ever accepted; the closest hit must not be asked of
+//! [`embree4_rs::CommittedScene::intersect_1`].
 
 pub mod bound;
 pub mod library;

@@ -20,7 +20,7 @@
 //! all are 0 or between 2^-26 and 2^70.
 //!
 //! Everything here is decided before Embree is asked. Computed in `f64`, with
-//! [`SECOND_ORDER`] for its rounding and for products of two roundings.
+//! `SECOND_ORDER` for its rounding and for products of two roundings.
 
 use triptych_spec::vertex::Primitives;
 

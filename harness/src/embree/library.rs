@@ -1,5 +1,6 @@
 //! Which Embree is loaded, for `doctor` and for the cache key.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use embree4_sys::{RTCDeviceProperty, rtcGetDeviceProperty, rtcNewDevice, rtcReleaseDevice};
@@ -14,6 +15,17 @@ pub struct Library {
     pub version: [u32; 3],
     /// The file, where the system tells (Linux does).
     pub path: Option<PathBuf>,
+}
+
+impl fmt::Display for Library {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [major, minor, patch] = self.version;
+        write!(f, "{major}.{minor}.{patch}")?;
+        match &self.path {
+            Some(path) => write!(f, " ({})", path.display()),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Asks the loaded library for its version.

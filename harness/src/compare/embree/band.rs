@@ -1,5 +1,6 @@
 //! Judging the pairs of a band of rows, pixel by pixel.
 
+use rayon::prelude::*;
 use triptych_spec::raster::{Setup, Span, sample};
 use triptych_spec::vertex::Primitives;
 
@@ -26,7 +27,7 @@ struct Reach {
     candidate: usize,
 }
 
-struct Band<'a, E> {
+struct Sweep<'a, E> {
     spec: &'a Primitives,
     embree: &'a E,
     vote: EmbreeVote,
@@ -34,46 +35,55 @@ struct Band<'a, E> {
     seen: Vec<Seen>,
 }
 
-/// Compares some rows.
+/// The rows that each triangle may cover; none without area.
+pub(super) fn rows(spec: &Primitives) -> Vec<Span> {
+    let count = u32::try_from(spec.prims.len()).expect("Embree has accepted them");
+    let rows = |prim| Setup::new(spec, prim).map_or(0..0, |s| s.rows(spec.size, spec.bits));
+    (0..count).into_par_iter().map(rows).collect()
+}
+
+/// Compares the rows `band`; `rows` is what [`rows`] says of the triangles.
 pub(super) fn judge<E: RayHits>(
     spec: &Primitives,
     embree: &E,
-    rows: Span,
+    rows: &[Span],
+    band: Span,
 ) -> Result<EmbreeVote, EmbreeError> {
-    let candidates = candidates(spec, embree, &rows);
-    let mut band = Band {
+    let candidates = candidates(spec, embree, rows, &band);
+    let mut sweep = Sweep {
         spec,
         embree,
         vote: EmbreeVote::default(),
         hits: Vec::new(),
         seen: Vec::new(),
     };
-    for row in rows {
-        band.row(row, &candidates)?;
+    for row in band {
+        sweep.row(row, &candidates)?;
     }
-    Ok(band.vote)
+    Ok(sweep.vote)
 }
 
-/// Triangles with area that reach one of the rows.
-fn candidates<E: RayHits>(spec: &Primitives, embree: &E, band: &Span) -> Vec<Candidate> {
+/// Triangles with area that reach one of the band's rows.
+fn candidates<E: RayHits>(
+    spec: &Primitives,
+    embree: &E,
+    rows: &[Span],
+    band: &Span,
+) -> Vec<Candidate> {
     let depth = embree.depth();
-    let meets = |prim: u32| {
-        let setup = Setup::new(spec, prim)?;
-        let rows = setup.rows(spec.size, spec.bits);
-        (rows.start < band.end && band.start < rows.end).then(|| Candidate {
+    let candidate = |(prim, rows): (u32, &Span)| {
+        let meets = rows.start < band.end && band.start < rows.end;
+        Some(Candidate {
             prim,
-            setup,
+            setup: meets.then(|| Setup::new(spec, prim))??,
             triangle: Triangle::new(spec, &depth, prim),
-            rows,
+            rows: rows.clone(),
         })
     };
-    (0_u32..)
-        .zip(&spec.prims)
-        .filter_map(|(prim, _)| meets(prim))
-        .collect()
+    (0_u32..).zip(rows).filter_map(candidate).collect()
 }
 
-impl<E: RayHits> Band<'_, E> {
+impl<E: RayHits> Sweep<'_, E> {
     /// Sweeps a row from left to right. `active` holds the candidates that make a
     /// pair with the current pixel, in order of `prim`.
     fn row(&mut self, row: u32, candidates: &[Candidate]) -> Result<(), EmbreeError> {
