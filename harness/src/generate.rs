@@ -177,8 +177,8 @@ struct Shape {
 
 impl Shape {
     /// Refuses what would exceed the limits of a mesh, before anything is made.
-    fn with(vertices: u64, triangles: u64) -> Result<Self, String> {
-        if vertices > VERTICES_MAX || triangles > TRIANGLES_MAX {
+    fn with(vertices: u128, triangles: u128) -> Result<Self, String> {
+        if vertices > VERTICES_MAX.into() || triangles > TRIANGLES_MAX.into() {
             return Err(format!(
                 "{triangles} triangles and {vertices} vertices exceed the limits of {TRIANGLES_MAX} and {VERTICES_MAX}"
             ));

@@ -5,8 +5,8 @@ use crate::scene::value::Point;
 
 /// The polygons as written.
 pub(super) fn faces(vertices: &[Point], faces: &[Vec<u32>]) -> Result<Shape, String> {
-    let corners: u64 = faces.iter().map(|f| f.len() as u64).sum();
-    let mut shape = Shape::with(vertices.len() as u64, corners)?;
+    let corners: u128 = faces.iter().map(|f| f.len() as u128).sum();
+    let mut shape = Shape::with(vertices.len() as u128, corners)?;
     shape.vertices = vertices.iter().map(|p| p.0).collect();
     for (number, face) in faces.iter().enumerate() {
         if face.len() < 3 {
@@ -33,7 +33,7 @@ pub(super) fn stack(
     order: Order,
     random: &mut Random,
 ) -> Result<Shape, String> {
-    let mut shape = Shape::with(4 * u64::from(layers), 2 * u64::from(layers))?;
+    let mut shape = Shape::with(4 * u128::from(layers), 2 * u128::from(layers))?;
     let mut depths: Vec<u32> = (0..layers).collect();
     match order {
         Order::FrontToBack => {}
@@ -62,7 +62,7 @@ pub(super) fn fan(spokes: u32, radius: f64, hub: f64) -> Result<Shape, String> {
             "spokes = {spokes} does not close a circle; 3 or more do"
         ));
     }
-    let mut shape = Shape::with(u64::from(spokes) + 1, spokes.into())?;
+    let mut shape = Shape::with(u128::from(spokes) + 1, spokes.into())?;
     let centre = shape.vertex([0.0, 0.0, hub]);
     for spoke in 0..spokes {
         let (sin, cos) = circle(spoke, spokes);
@@ -85,8 +85,8 @@ pub(super) fn grid(
     if !(0.0..0.25).contains(&jitter) {
         return Err(format!("jitter = {jitter} is outside 0 to 0.25"));
     }
-    let (across, down) = (u64::from(columns) + 1, u64::from(rows) + 1);
-    let cells = 2 * u64::from(columns) * u64::from(rows);
+    let (across, down) = (u128::from(columns) + 1, u128::from(rows) + 1);
+    let cells = 2 * u128::from(columns) * u128::from(rows);
     let mut shape = Shape::with(across * down, cells)?;
     for row in 0..=rows {
         for column in 0..=columns {
@@ -115,8 +115,8 @@ pub(super) fn grid(
 
 /// Sine and cosine of `i / n` of a circle, exact at its quarters.
 pub(super) fn circle(i: u32, n: u32) -> (f64, f64) {
-    match 4 * u64::from(i) % u64::from(n) {
-        0 => match 4 * u64::from(i) / u64::from(n) % 4 {
+    match 4 * u128::from(i) % u128::from(n) {
+        0 => match 4 * u128::from(i) / u128::from(n) % 4 {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),
             2 => (0.0, -1.0),

@@ -16,8 +16,8 @@ pub(super) fn scatter(generator: &Generator, random: &mut Random) -> Result<Shap
     else {
         return Err("not a scatter".to_owned());
     };
-    let different = u64::from(*count);
-    let mut shape = Shape::with(3 * different, different * u64::from(*copies))?;
+    let different = u128::from(*count);
+    let mut shape = Shape::with(3 * different, different * u128::from(*copies))?;
     for _ in 0..*count {
         let centre = extent.0.map(|side| side / 2.0 * random.signed());
         let (along, across) = axes(*flat, random);

@@ -10,7 +10,7 @@ pub(super) fn sphere(radius: f64, [down, around]: [u32; 2]) -> Result<Shape, Str
             "segments = [{down}, {around}] must be at least [2, 3]"
         ));
     }
-    let (d, a) = (u64::from(down), u64::from(around));
+    let (d, a) = (u128::from(down), u128::from(around));
     let mut shape = Shape::with((d - 1) * a + 2, 2 * a * (d - 1))?;
     let north = shape.vertex([0.0, radius, 0.0]);
     for ring in 1..down {
@@ -49,7 +49,7 @@ pub(super) fn torus([ring, tube]: [f64; 2], [around, along]: [u32; 2]) -> Result
             "segments = [{around}, {along}] must be at least [3, 3]"
         ));
     }
-    let vertices = u64::from(around) * u64::from(along);
+    let vertices = u128::from(around) * u128::from(along);
     let mut shape = Shape::with(vertices, 2 * vertices)?;
     for i in 0..around {
         let (s, c) = circle(i, around);

@@ -126,7 +126,7 @@ impl<'a> Body<'a> {
                         true => parser.read_big_endian_element(bytes, element),
                         false => parser.read_little_endian_element(bytes, element),
                     };
-                    let read = read.map_err(|e| error(e.to_string()))?;
+                    let read = read.map_err(|e| error(first_line(&e.to_string())))?;
                     take(read).map_err(error)?;
                 }
             }
@@ -145,6 +145,11 @@ impl<'a> Body<'a> {
         };
         (n > 0).then(|| format!("{n} {what} after the last item ignored"))
     }
+}
+
+/// The parser adds lines of details that say no more.
+fn first_line(message: &str) -> String {
+    message.lines().next().unwrap_or_default().to_owned()
 }
 
 fn unreadable(text: &str, name: &str) -> String {

@@ -1,8 +1,8 @@
-//! The default camera: a perspective that shows everything.
+//! The default camera: a perspective that just shows everything.
 
 use triptych_spec::camera::{Camera, Projection};
 
-use crate::vector::{add, length, normalize, scale, sub};
+use crate::vector::{add, cross, dot, length, normalize, scale, sub};
 
 /// Full vertical angle in degrees.
 const FOV: f64 = 45.0;
@@ -10,17 +10,17 @@ const FOV: f64 = 45.0;
 /// The view is from here towards the middle: slightly right and above.
 const FROM: [f64; 3] = [0.4, 0.35, 1.0];
 
-/// A camera that sees the ball around the bounding box of `points`; the unit cube
-/// if there are none.
-pub(super) fn camera(points: impl Iterator<Item = [f64; 3]>, aspect: f64) -> Camera {
-    let mut bounds: Option<[[f64; 3]; 2]> = None;
-    for p in points {
+/// Up on the picture, as far as the view allows.
+const UP: [f64; 3] = [0.0, 1.0, 0.0];
+
+/// The camera that comes as near to `points` as it can with all of them in view
+/// and a margin; the unit cube's if there are none.
+pub(super) fn camera<I: Iterator<Item = [f64; 3]>>(points: impl Fn() -> I, aspect: f64) -> Camera {
+    let bounds = points().fold(None, |bounds: Option<[[f64; 3]; 2]>, p| {
         let [low, high] = bounds.unwrap_or([p, p]);
-        bounds = Some([
-            [0, 1, 2].map(|i| low[i].min(p[i])),
-            [0, 1, 2].map(|i| high[i].max(p[i])),
-        ]);
-    }
+        let low = [0, 1, 2].map(|i| low[i].min(p[i]));
+        Some([low, [0, 1, 2].map(|i| high[i].max(p[i]))])
+    });
     let [low, high] = bounds.unwrap_or([[-0.5; 3], [0.5; 3]]);
     let centre = add(scale(low, 0.5), scale(high, 0.5));
     // A single point has no size, and far from the origin a tiny one would drown in
@@ -30,16 +30,27 @@ pub(super) fn camera(points: impl Iterator<Item = [f64; 3]>, aspect: f64) -> Cam
         0.0 => 1.0,
         radius => radius,
     };
-    let half = libm::tan(FOV.to_radians() / 2.0) * aspect.min(1.0);
-    // sin(atan(x)) = x / sqrt(1 + x^2); at most sin(22.5 degrees), so the eye stays
-    // outside of the ball.
-    let distance = radius * (1.0 + half * half).sqrt() / half;
+    let back = normalize(FROM);
+    let right = normalize(cross(UP, back));
+    let up = cross(back, right);
+    let tan = libm::tan(FOV.to_radians() / 2.0);
+    // A point at height h over the line of sight is in view from h / tan behind it.
+    let reach = |p: [f64; 3]| {
+        let p = sub(p, centre);
+        let aside = (dot(p, right).abs() / (tan * aspect)).max(dot(p, up).abs() / tan);
+        dot(p, back) + 1.05 * aside
+    };
+    // At least a tenth of the radius is left in front of the nearest point.
+    let distance = points().map(reach).fold(1.1 * radius, f64::max);
+    let nearest = points().map(|p| dot(sub(p, centre), back));
+    let nearest = nearest.fold(-radius, f64::max);
+    let distance = distance.max(nearest + 0.1 * radius);
     Camera {
-        eye: add(centre, scale(normalize(FROM), distance)),
+        eye: add(centre, scale(back, distance)),
         target: centre,
-        up: [0.0, 1.0, 0.0],
+        up: UP,
         projection: Projection::Perspective { fov: FOV },
-        near: distance - 1.01 * radius,
+        near: 0.9 * (distance - nearest),
         far: distance + 1.01 * radius,
     }
 }

@@ -39,7 +39,20 @@ struct Placed<'a> {
     entry: &'a Spanned<MeshEntry>,
 }
 
+impl Placed<'_> {
+    /// Every vertex of every instance in world space.
+    fn points(&self) -> impl Iterator<Item = [f64; 3]> {
+        let points = |world: &Matrix| {
+            let world = *world;
+            let positions = self.source.mesh.positions.iter();
+            positions.map(move |p| world.point(p.map(f64::from)))
+        };
+        self.worlds.iter().flat_map(points)
+    }
+}
+
 pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<Scene, LoadError> {
+    check_names(parsed)?;
     let entries = parsed.file.mesh.iter().zip(sources);
     let placed: Vec<Placed> = entries
         .map(|(entry, source)| place(parsed, entry, source))
@@ -59,6 +72,18 @@ pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<Scene, Load
         append(&mut scene, parsed, &view, mesh, &mut primitive)?;
     }
     Ok(scene)
+}
+
+/// Refuses two materials of one name.
+fn check_names(parsed: &Parsed) -> Result<(), InputError> {
+    let mut seen = std::collections::BTreeSet::new();
+    for name in parsed.file.material.iter().map(|m| &m.name) {
+        if !seen.insert(name.get_ref()) {
+            let message = format!("material `{}` is defined twice", name.get_ref());
+            return Err(parsed.error(name.span(), message));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses what exceeds the limits before anything is made.
@@ -174,13 +199,7 @@ fn view(parsed: &Parsed, placed: &[Placed]) -> Result<Matrix, InputError> {
     let size = parsed.file.size.0;
     let aspect = f64::from(size.width) / f64::from(size.height);
     let Some(entry) = &parsed.file.camera else {
-        let points = placed.iter().flat_map(|mesh| {
-            let points = |world: Matrix| {
-                let positions = mesh.source.mesh.positions.iter();
-                positions.map(move |p| world.point(p.map(f64::from)))
-            };
-            mesh.worlds.iter().copied().flat_map(points)
-        });
+        let points = || placed.iter().flat_map(Placed::points);
         let fitted = fit::camera(points, aspect).matrix(aspect);
         return fitted.map_err(|e| InputError::new(parsed.path, e.to_string()));
     };

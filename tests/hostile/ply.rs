@@ -1,0 +1,63 @@
+//! PLY files.
+
+use super::{Case, Fails, Loads};
+
+/// What each is, and what is to come of it.
+#[rustfmt::skip] // one case, one row
+pub const CASES: &[Case] = &[
+    // ---- loads
+    ("plain.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", Loads(1)),
+    ("no-end-of-line.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", Loads(1)),
+    ("crlf.ply", b"ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nelement face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n", Loads(1)),
+    ("bare-cr.ply", b"ply\rformat ascii 1.0\relement vertex 3\rproperty float x\rproperty float y\rproperty float z\relement face 1\rproperty list uchar int vertex_indices\rend_header\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r", Loads(1)),
+    ("numbers.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n.5 5. +1\n1e-3 1E+3 -.5e0\n0 1 1e-400\n3 0 1 2\n", Loads(1)),
+    ("quad-and-line.ply", b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n2 0 1\n0\n", Loads(2)),
+    ("more-properties.ply", b"ply\nformat ascii 1.0\ncomment caf\xe9\nobj_info none\nelement vertex 3\nproperty uchar red\nproperty float x\nproperty float quality\nproperty float y\nproperty float z\nelement edge 1\nproperty int a\nproperty int b\nelement face 1\nproperty list uchar uint vertex_indices\nproperty float area\nend_header\n255 0 nan 0 0\n0 1 inf 0 0\n0 0 0 1 0\n0 1\n3 0 1 2 .5\n", Loads(1)),
+    ("faces-first.ply", b"ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n", Loads(1)),
+    ("blank-lines.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\n0 0 0\n1 0 0\n\n0 1 0\n3 0 1 2\n\n\n", Loads(1)),
+    ("little-endian.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\0\0\x03\0\x01\x02", Loads(1)),
+    ("big-endian.ply", b"ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n\0\0\0\0\0\0\0\0\0\0\0\0\x3f\x80\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x3f\x80\0\0\0\0\0\0\x03\0\x01\x02", Loads(1)),
+    ("binary-starts-with-line-feed.ply", b"ply\r\nformat binary_little_endian 1.0\r\nelement vertex 3\r\nproperty uchar x\r\nproperty uchar y\r\nproperty uchar z\r\nelement face 1\r\nproperty list uchar uchar vertex_indices\r\nend_header\r\n\n\n\n\0\0\0\0\x01\0\x03\0\x01\x02", Loads(1)),
+    ("bytes-left-over.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n\x01\x02\x03\x03\0\0\0trailer", Loads(1)),
+    // ---- headers
+    ("empty.ply", b"", Fails(":1: starts with ``, not with `ply`")),
+    ("obj.ply", b"v 0 0 0\n", Fails(":1: starts with `v 0 0 0`, not with `ply`")),
+    ("no-end.ply", b"ply\nformat ascii 1.0\n", Fails(": no line `end_header` in the first 21 bytes")),
+    ("no-format.ply", b"ply\nelement vertex 0\nend_header\n", Fails(": No format line found.")),
+    ("odd-format.ply", b"ply\nformat xml 1.0\nend_header\n", Fails(":2: `format xml 1.0` is no PLY header statement")),
+    ("odd-type.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float80 x\nend_header\n", Fails(":4: `property float80 x` is no PLY header statement")),
+    ("negative-count.ply", b"ply\nformat ascii 1.0\nelement vertex -1\nend_header\n", Fails(":3: `element vertex -1` is no PLY header statement")),
+    ("count-beyond-u64.ply", b"ply\nformat ascii 1.0\nelement vertex 18446744073709551616\nend_header\n", Fails(":3: `element vertex 18446744073709551616` is no PLY header statement")),
+    ("property-first.ply", b"ply\nformat ascii 1.0\nproperty float x\nend_header\n", Fails(":3: `property float x` is no PLY header statement")),
+    ("twice.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement vertex 2\nend_header\n", Fails(":5: `vertex` is defined twice")),
+    ("property-twice.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float x\nend_header\n", Fails(":5: `x` is defined twice")),
+    ("no-vertices.ply", b"ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 0 0\n", Fails(": the header has no element `vertex`")),
+    ("no-faces.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", Fails(": the header has no element `face`")),
+    ("no-z.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0\n3 0 0 0\n", Fails(": vertices have no number `z`")),
+    ("x-is-a-list.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n", Fails(": vertices have no number `x`")),
+    ("corners-are-floats.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar float vertex_indices\nend_header\n0 0 0\n3 0 0 0\n", Fails(": faces have no list of integers `vertex_indices`")),
+    ("float-list-count.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list float int vertex_indices\nend_header\n\x01\x01\x01", Fails(": a list of `face` is counted in fractions")),
+    ("absurd-vertices.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n", Fails(": 4000000000 items `vertex` exceed the limit of 12582912")),
+    ("absurd-faces.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 99999999\nproperty list uchar int vertex_indices\nend_header\n", Fails(": 99999999 items `face` exceed the limit of 4194304")),
+    ("promises-more.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\0\0\0\0", Fails(": 1000000 items `vertex` are promised, and 4 bytes follow the header")),
+    ("absurd-other.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nelement other 18446744073709551615\nproperty float a\nend_header\n0 0 0\n3 0 0 0\n", Fails(": 18446744073709551615 items `other` are promised, and 14 bytes follow the header")),
+    ("absurd-nothing.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nelement other 18446744073709551615\nend_header\n0 0 0\n3 0 0 0\n", Fails(": element `other` has no properties")),
+    // ---- bodies
+    ("nan.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", Fails(":11: `nan` is not finite")),
+    ("beyond-f32.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1e39 0\n3 0 1 2\n", Fails(":12: `1e39` is not finite")),
+    ("nan-binary.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n\0\0\xc0\x7f\0\0\x03\0\0\0", Fails(": vertex 0 of 1: coordinate NaN is not finite in f32")),
+    ("double-binary.ply", b"ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty double x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n\x7f\xe0\0\0\0\0\0\0\0\0\x03\0\0\0", Fails(": vertex 0 of 1: coordinate inf is not finite in f32")),
+    ("word.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 a 0\n3 0 0 0\n", Fails(":10: `a` is not a number")),
+    ("short-row.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0\n3 0 0 0\n", Fails(":10: `0 0 ` is no item `vertex` as the header defines it")),
+    ("ends-early.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0.00 0.00 0.00\n1.00 0.00 0.00\n", Fails(": ends after 2 of 3 items `vertex`")),
+    ("ends-early-binary.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n\x01\x01\x01\x03\0\0\0\0\0", Fails(": face 0 of 1: Couldn't find a list element at index 0.")),
+    ("huge-list.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n\x01\x01\x01\xff\xff\xff\xff\0\0\0\0", Fails(": face 0 of 1: Couldn't find a list element at index 1.")),
+    ("negative-list.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list char uint vertex_indices\nend_header\n\x01\x01\x01\xff", Fails(": face 0 of 1: List length cannot be negative (i8).")),
+    ("index-beyond.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 1\n", Fails(":11: vertex 1 is out of range; the file has 1")),
+    ("index-negative.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 -1\n", Fails(":11: vertex -1 is out of range; the file has 1")),
+    ("index-fraction.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 0.5\n", Fails(":11: `3 0 0 5e-1 ` is no item `face` as the header defines it")),
+    ("list-too-short.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0 0\n", Fails(":11: `4 0 0 0 ` is no item `face` as the header defines it")),
+    ("list-absurd.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n18446744073709551615 0 0 0\n", Fails(":11: `18446744073709551615 0 0 0 ` is no item `face` as the header defines it")),
+    ("lines-only.ply", b"ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n2 0 1\n", Fails(": no triangles, only 2 vertices")),
+    ("not-gzip.ply.gz", b"ply\nformat ascii 1.0\n", Fails(": is not sound gzip: invalid gzip header")),
+];
