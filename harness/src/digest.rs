@@ -188,40 +188,38 @@ pub fn leg_parts(label: &str) -> (&str, Option<&str>, Option<&str>) {
     }
 }
 
-/// The command that replays just the scene and legs of a row.
-pub fn rerun(row: &Row) -> String {
-    let mut options: Vec<[&str; 2]> = Vec::new();
-    for label in [&row.a, &row.b] {
-        let (leg, adapter, path) = leg_parts(label);
-        let given = [
-            ("--leg", Some(leg)),
-            ("--adapter", adapter),
-            ("--path", path),
-        ];
-        for (option, value) in given {
-            let Some(value) = value else { continue };
-            if !options.contains(&[option, value]) {
-                options.push([option, value]);
-            }
+/// The command that replays just the scene and legs of a row. `options` are those
+/// of the run that change results, such as `--no-skip`, ready for a shell.
+pub fn rerun(row: &Row, options: &str) -> String {
+    let (a, b) = (leg_parts(&row.a), leg_parts(&row.b));
+    let mut words = Vec::new();
+    // The spec always runs; one path can be asked for, or all.
+    let one_path = a.2.is_none() || b.2.is_none() || a.2 == b.2;
+    for (leg, adapter, path) in [a, b] {
+        let path = path.filter(|_| one_path);
+        let leg = (leg != "spec").then_some(leg);
+        for (option, value) in [("--leg", leg), ("--adapter", adapter), ("--path", path)] {
+            let word = value.map(|v| format!("{option} {}", shell_word(v)));
+            words.extend(word.filter(|w| !words.contains(w)));
         }
     }
-    command(&options, &row.scene)
+    if !options.is_empty() {
+        words.push(options.to_owned());
+    }
+    replay(&row.scene, &words.join(" "))
 }
 
-/// The command that replays a scene through all legs.
-pub fn replay(scene: &str) -> String {
-    command(&[], scene)
-}
-
-fn command(options: &[[&str; 2]], scene: &str) -> String {
-    let mut words = vec!["cargo triptych replay --exact".to_owned()];
-    for [option, value] in options {
-        words.push(format!("{option} {}", shell_word(value)));
+/// The command that replays a scene, with options ready for a shell.
+pub fn replay(scene: &str, options: &str) -> String {
+    let mut words = vec!["cargo triptych replay --exact"];
+    if !options.is_empty() {
+        words.push(options);
     }
     if scene.starts_with('-') {
-        words.push("--".to_owned());
+        words.push("--");
     }
-    words.push(shell_word(scene).into_owned());
+    let scene = shell_word(scene);
+    words.push(&scene);
     words.join(" ")
 }
 

@@ -29,7 +29,7 @@ enum LineOut<'a> {
 #[derive(Deserialize)]
 #[serde(tag = "type", rename_all = "kebab-case")]
 enum LineIn {
-    Row(Row),
+    Row(Box<Row>),
     Summary(Summary),
 }
 
@@ -133,7 +133,7 @@ fn read_run(path: &Path, mut input: impl BufRead, rows: &mut Vec<Row>) -> Result
         match serde_json::from_slice(text) {
             Ok(LineIn::Row(row)) => {
                 complete = false;
-                rows.push(row);
+                rows.push(*row);
             }
             Ok(LineIn::Summary(summary)) => {
                 check(&summary, &rows[checked..])

@@ -80,6 +80,14 @@ impl Reporter {
         }
     }
 
+    /// Adds options of the run that change results, such as `--no-skip`, to the
+    /// commands that run a scene again.
+    #[must_use]
+    pub fn with_options(mut self, options: impl Into<String>) -> Self {
+        self.table.options = options.into();
+        self
+    }
+
     /// Says on the progress bar that a scene is being replayed.
     pub fn scene_started(&mut self, name: &str) {
         self.running.push(clean(name).into_owned());

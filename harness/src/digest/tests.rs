@@ -122,17 +122,20 @@ fn skips_are_counted_by_reason() {
 
 #[test]
 fn the_command_names_each_leg_once_and_quotes() {
-    let gpus = row(
+    let gpu = row(
         "abuffer/fan",
         "build",
         "spec",
         "gpu@llvmpipe (LLVM 15)/compute",
     );
-    let expected = "cargo triptych replay --exact --leg spec --leg gpu \
-                    --adapter 'llvmpipe (LLVM 15)' --path compute abuffer/fan";
-    assert_eq!(rerun(&gpus), expected);
-    let both = row("-x", "build", "gpu@x/compute", "gpu@x/fragment");
-    let expected = "cargo triptych replay --exact --leg gpu --adapter x \
-                    --path compute --path fragment -- -x";
-    assert_eq!(rerun(&both), expected);
+    let expected = "cargo triptych replay --exact --leg gpu \
+                    --adapter 'llvmpipe (LLVM 15)' --path compute --seed 7 abuffer/fan";
+    assert_eq!(rerun(&gpu, "--seed 7"), expected);
+    let paths = row("-x", "build", "gpu@x/compute", "gpu@x/fragment");
+    let expected = "cargo triptych replay --exact --leg gpu --adapter x -- -x";
+    assert_eq!(rerun(&paths, ""), expected, "both paths, hence neither");
+    let vote = row("a", "cover", "gpu@x/compute", "embree");
+    let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute \
+                    --leg embree a";
+    assert_eq!(rerun(&vote, ""), expected);
 }

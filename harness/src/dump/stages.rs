@@ -66,15 +66,13 @@ impl LegDump {
     ) -> io::Result<()> {
         let n = fragments.len();
         self.u32("abuffer", "offsets", &[offsets.len()], offsets)?;
-        let columns: [(&str, fn(&Fragment) -> u32); 3] = [
-            ("depth", |f| f.key),
-            ("prim", |f| f.prim),
-            ("mask", |f| f.mask),
-        ];
-        for (name, of) in columns {
+        let column = |name, of: fn(&Fragment) -> u32| {
             let column: Vec<u32> = fragments.iter().map(of).collect();
-            self.u32("abuffer", name, &[n], &column)?;
-        }
+            self.u32("abuffer", name, &[n], &column)
+        };
+        column("depth", |f| f.key)?;
+        column("prim", |f| f.prim)?;
+        column("mask", |f| f.mask)?;
         self.f32("abuffer", "rgba", &[n, 4], colours.as_flattened())
     }
 }

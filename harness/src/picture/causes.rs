@@ -43,8 +43,12 @@ const GAP: [u8; 3] = [255, 255, 255];
 /// pixel of a large picture is seen.
 const MARK_MIN: u32 = 5;
 
-/// Largest enlargement of a small picture: a pixel must show a pattern.
-const ENLARGE_MAX: u32 = 16;
+/// A small picture is enlarged by the largest whole factor up to this side, so
+/// that a pixel shows its pattern.
+const SIDE_SMALL: u32 = SIDE_MAX / 2;
+
+/// Largest enlargement.
+const ENLARGE_MAX: u32 = 32;
 
 /// A map of the pixels that differ over a dimmed picture of the scene.
 ///
@@ -58,7 +62,7 @@ pub fn causes(
 ) -> Image {
     let side = size.width.max(size.height);
     let reduce = super::reduction(size);
-    let enlarge = (SIDE_MAX / side).clamp(1, ENLARGE_MAX);
+    let enlarge = (SIDE_SMALL / side).clamp(1, ENLARGE_MAX);
     let out = [size.width, size.height].map(|n| n.div_ceil(reduce) * enlarge);
     let mut by_cause: BTreeMap<Option<Cause>, Vec<u32>> = BTreeMap::new();
     for (pixel, cause) in marks {

@@ -13,10 +13,10 @@ use crate::text::{clean, count, plural, share};
 
 /// For each pair of legs the first stage that diverges: an error belongs to the
 /// first stage that has it, later ones inherit it and are only counted.
-pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], ink: Ink) -> Vec<String> {
+pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], options: &str, ink: Ink) -> Vec<String> {
     let mut lines = Vec::new();
     if pairs.is_empty() {
-        let command = digest::replay(&scene.name);
+        let command = digest::replay(&scene.name, options);
         lines.push("   nothing was compared, and no reason is known".to_owned());
         lines.push(ink.paint(&format!("     again: {}", clean(&command)), Style::dim));
     }
@@ -42,7 +42,7 @@ pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], ink: Ink) -> Vec<String> {
             let later = later.join(", ");
             lines.push(format!("     later stages diverge too: {}", clean(&later)));
         }
-        let again = format!("     again: {}", digest::rerun(row));
+        let again = format!("     again: {}", digest::rerun(row, options));
         lines.push(ink.paint(&clean(&again), Style::dim));
     }
     lines
@@ -51,10 +51,12 @@ pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], ink: Ink) -> Vec<String> {
 /// What is wrong with a row that diverges, in a sentence.
 fn finding(row: &Row) -> String {
     let mut parts = Vec::new();
-    if row.compared == 0 && row.skipped.is_none() {
+    if row.compared == 0 && row.differ == 0 && row.skipped.is_none() {
         parts.push("nothing compared, no reason given".to_owned());
     }
-    if row.differ > 0 || row.unexplained > 0 {
+    if row.compared == 0 && row.differ > 0 {
+        parts.push("failed before anything was compared".to_owned());
+    } else if row.differ > 0 || row.unexplained > 0 {
         let (differ, compared) = (count(row.differ), count(row.compared));
         parts.push(format!(
             "{differ} of {compared} {} differ",

@@ -20,6 +20,8 @@ pub struct Table {
     /// Reasons for skipping, by the number that stands for them.
     reasons: Vec<String>,
     totals: Totals,
+    /// Options of the run for the commands that run a scene again.
+    pub options: String,
 }
 
 impl Table {
@@ -31,6 +33,7 @@ impl Table {
             pairs: Vec::new(),
             reasons: Vec::new(),
             totals: Totals::default(),
+            options: String::new(),
         }
     }
 
@@ -54,7 +57,7 @@ impl Table {
             let line = format!("{}[{}] {}", " ".repeat(MARK), i + 1, clean(reason));
             lines.push(self.ink.paint(&line, Style::dim));
         }
-        lines.extend(explain::scene(scene, &pairs, self.ink));
+        lines.extend(explain::scene(scene, &pairs, &self.options, self.ink));
         lines
     }
 

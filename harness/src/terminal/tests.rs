@@ -19,7 +19,8 @@ impl Write for Page {
 
 fn printed(width: usize, colour: bool, scenes: &[SceneResult]) -> String {
     let page = Page::default();
-    let mut reporter = Reporter::to(Box::new(page.clone()), width, colour);
+    let reporter = Reporter::to(Box::new(page.clone()), width, colour);
+    let mut reporter = reporter.with_options("--no-skip");
     for scene in scenes {
         reporter.scene_started(&scene.name);
         reporter.scene_done(scene).expect("printed");
@@ -92,7 +93,7 @@ fn the_table_on_a_wide_terminal() {
    spec against gpu@llvmpipe/compute, build: 12 of 1,234,567 fragments differ; overflow 9, duplicate 1; 2 items without a cause
      first: pixel (1, 2)
      later stages diverge too: sort
-     again: cargo triptych replay --exact --leg spec --leg gpu --adapter llvmpipe --path compute abuffer/b
+     again: cargo triptych replay --exact --leg gpu --adapter llvmpipe --path compute --no-skip abuffer/b
 
 1 of 2 scenes diverges, 4,938,268 items compared, 4 unexplained, 12.0 s
 Causes, over all stages: overflow 18, duplicate 2

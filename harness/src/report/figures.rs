@@ -1,0 +1,142 @@
+//! Pictures side by side, each with what its colours mean.
+
+use maud::{Markup, html};
+
+use super::{Picture, SceneReport, base64, text};
+use crate::digest::leg_parts;
+use crate::picture::{Image, Legend, Mark, heat, swatch};
+use crate::text::{clean, count, plural};
+
+/// A small picture is enlarged by the largest whole factor up to this width.
+const WIDTH: u32 = 320;
+
+/// Largest enlargement: a single pixel need not fill the window.
+const ENLARGE_MAX: u32 = 32;
+
+/// Boxes in the legend of a heat map, at most.
+const STEPS: u32 = 10;
+
+/// The pictures of a scene.
+pub fn grid(scene: &SceneReport) -> Markup {
+    html! {
+        @if !scene.pictures.is_empty() {
+            h4 { "Pictures" }
+            div.figures {
+                @for group in groups(&scene.pictures) { (figure(&scene.name, &group)) }
+            }
+        }
+    }
+}
+
+/// GPU legs whose pictures are the same, byte for byte, together.
+fn groups(pictures: &[Picture]) -> Vec<Vec<&Picture>> {
+    let leg = |picture: &Picture| leg_parts(&picture.title).0 == "gpu";
+    let mut groups: Vec<Vec<&Picture>> = Vec::new();
+    for picture in pictures {
+        let same = |group: &&mut Vec<&Picture>| {
+            let first = group[0];
+            leg(first) && leg(picture) && first.image == picture.image
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(picture),
+            None => groups.push(vec![picture]),
+        }
+    }
+    groups
+}
+
+fn figure(scene: &str, group: &[&Picture]) -> Markup {
+    let Picture { caption, image, .. } = group[0];
+    let titles: Vec<_> = group.iter().map(|p| clean(&p.title)).collect();
+    let alt = format!("{} of {}: {}", titles[0], clean(scene), clean(caption));
+    html! {
+        figure {
+            button.zoom type="button" aria-label={"Enlarge: " (titles[0])} {
+                (img(image, &alt))
+            }
+            figcaption {
+                @for (i, title) in titles.iter().enumerate() {
+                    @if i > 0 { ", " }
+                    strong { (title) }
+                }
+                @if group.len() > 1 { " (the same, byte for byte)" }
+                @if !caption.is_empty() { ". " (text(caption)) }
+                " " span.note { (text(&image.note)) }
+                (legend(&image.legend))
+            }
+        }
+    }
+}
+
+fn img(image: &Image, alt: &str) -> Markup {
+    let side = image.width.max(image.height).max(1);
+    let enlarge = (WIDTH / side).clamp(1, ENLARGE_MAX);
+    html! {
+        img class=[(enlarge > 1).then_some("pixels")] src=(base64::png(&image.png)) alt=(alt)
+            width=(image.width * enlarge) height=(image.height * enlarge);
+    }
+}
+
+fn legend(legend: &Legend) -> Markup {
+    match legend {
+        Legend::Colours => html! {},
+        Legend::Heat { max } => html! {
+            ol.heat aria-label="Colours from 0 to the largest count" {
+                @for n in steps(*max) {
+                    @let [r, g, b] = heat(n, *max);
+                    li { span style={"background:rgb(" (r) "," (g) "," (b) ")"} {}
+                        (count(u64::from(n))) }
+                }
+            }
+        },
+        Legend::Causes(marks) if marks.is_empty() => html! { p { "No pixel differs." } },
+        Legend::Causes(marks) => html! { ul.causes { @for mark in marks { (cause(mark)) } } },
+    }
+}
+
+fn cause(mark: &Mark) -> Markup {
+    let sample = base64::png(&swatch(mark.cause));
+    let [x, y] = mark.first;
+    html! {
+        li {
+            img.pixels src=(sample) alt="" width="16" height="16";
+            " "
+            @match mark.cause {
+                Some(cause) => { a href={"#cause-" (cause.name())} { (cause.name()) } }
+                None => { strong { "without a cause" } }
+            }
+            ": " (plural(mark.pixels, "pixel")) ", first at column " (x) ", row " (y)
+        }
+    }
+}
+
+/// 0, powers of two, and the largest count.
+fn steps(max: u32) -> Vec<u32> {
+    let doublings = max.checked_ilog2().map_or(0, |n| n + 1);
+    let stride = doublings.div_ceil(STEPS - 2).max(1) as usize;
+    let powers = (0..doublings).step_by(stride).map(|n| 1 << n);
+    let mut steps: Vec<u32> = std::iter::once(0).chain(powers).collect();
+    if max > 0 && steps.last() != Some(&max) {
+        steps.push(max);
+    }
+    steps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_legend_spans_the_scale_and_stays_short() {
+        assert_eq!(steps(0), [0]);
+        assert_eq!(steps(1), [0, 1]);
+        assert_eq!(steps(5), [0, 1, 2, 4, 5]);
+        assert_eq!(steps(300), [0, 1, 4, 16, 64, 256, 300]);
+        for max in [1, 255, 256, 65_535, u32::MAX] {
+            let steps = steps(max);
+            assert!(steps.len() <= STEPS as usize, "{max}: {steps:?}");
+            assert_eq!(steps.last(), Some(&max));
+            assert!(steps.is_sorted_by(|a, b| a < b), "{steps:?}");
+        }
+    }
+}
