@@ -17,6 +17,7 @@ pub mod observe;
 pub mod picture;
 pub mod plan;
 pub mod replay;
+pub mod report;
 pub mod row;
 pub mod scene;
 pub mod terminal;
