@@ -61,3 +61,20 @@ fn the_corpus_agrees_with_its_closed_forms() {
     // What the whole corpus may cost: half a minute on lavapipe's slowest path.
     assert!(total < 25_000_000, "{total} fragments are too many");
 }
+
+#[test]
+fn the_readme_says_what_each_scene_is_for() {
+    let root = corpus::root();
+    let readme = std::fs::read_to_string(root.join("README.md")).expect("the corpus has a README");
+    for entry in corpus::list(&root).expect("the corpus is sound") {
+        let text = std::fs::read_to_string(&entry.path).expect("a scene is text");
+        let purpose = text.lines().find_map(|l| l.strip_prefix("purpose = "));
+        let purpose = purpose.expect("purpose stands on a line of its own");
+        let case = entry.name.trim_start_matches(&entry.family);
+        let row = format!("| `{}` | {} |", &case[1..], purpose.trim_matches('"'));
+        assert!(
+            readme.contains(&row),
+            "corpus/README.md needs the row {row}"
+        );
+    }
+}
