@@ -165,6 +165,12 @@ pub fn run(
     Ok(result)
 }
 
+/// Steps along a list within one dispatch. Twin: `STEPS` in `abuffer.wgsl`.
+pub const STEPS: u64 = 16_384;
+
+/// Bytes of a pixel's progress. Twin: `Progress` in `abuffer.wgsl`.
+pub const PROGRESS: u64 = 32;
+
 /// Pixels that a dispatch of one workgroup row can serve.
 const PIXELS_MAX: u32 = 65_535 * crate::frame::WORKGROUP;
 
@@ -268,22 +274,37 @@ impl Run<'_, '_> {
 
     /// Sorts and resolves; gives the sorted lists and appends to the picture.
     fn finish(&mut self, b: &Buffers, image: &mut Vec<[f32; 3]>) -> Result<Lists, GpuError> {
-        let buffers = b.named();
         if self.options.lists && !self.options.given.is_some_and(|g| g.sorted) {
-            self.times.sort =
-                per_pixel(self.rasterizer, "abuffer", "sort", self.frame(), &buffers)?;
+            self.times.sort = self.until_done("sort", b)?;
         }
-        self.times.resolve = per_pixel(
-            self.rasterizer,
-            "abuffer",
-            "resolve",
-            self.frame(),
-            &buffers,
-        )?;
+        self.times.resolve = self.until_done("resolve", b)?;
         let pixels = self.band.pixels(self.rasterizer.size) as usize;
         let picture = self.gpu().read::<[f32; 4]>(&b.picture, pixels)?;
         image.extend(picture.into_iter().map(|[r, g, b, _]| [r, g, b]));
         self.lists(b)
+    }
+
+    /// Dispatches a stage until no pixel asks for more. Merging a list of n nodes
+    /// takes at most 4 n steps in each of at most 32 passes; what needs more
+    /// follows a list that does not end.
+    fn until_done(&self, stage: &'static str, b: &Buffers) -> Result<Duration, GpuError> {
+        let gpu = self.gpu();
+        let pixels = u64::from(self.band.pixels(self.rasterizer.size));
+        let progress = gpu.storage("progress", 4 + PROGRESS * pixels)?;
+        let mut buffers = b.named().to_vec();
+        buffers.push(("progress", &progress));
+        let mut time = Duration::ZERO;
+        for _ in 0..=4 * 32 * u64::from(self.capacity) / STEPS {
+            gpu.queue.write_buffer(&progress, 0, &[0; 4]);
+            time += per_pixel(self.rasterizer, "abuffer", stage, self.frame(), &buffers)?;
+            if gpu.read::<u32>(&progress, 1)?[0] == 0 {
+                return Ok(time);
+            }
+        }
+        Err(GpuError::Endless {
+            adapter: gpu.name.clone(),
+            stage,
+        })
     }
 
     fn lists(&self, b: &Buffers) -> Result<Lists, GpuError> {

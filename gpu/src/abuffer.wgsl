@@ -112,94 +112,170 @@ fn before(a: u32, b: u32) -> bool {
     return x.key < y.key || (x.key == y.key && x.prim < y.prim);
 }
 
+// Where a pixel's sort or resolve stands between two dispatches.
+struct Progress {
+    merged: u32,        // first node of what the pass has merged
+    tail: u32,          // its last node
+    left: u32,          // next node of the left run; of the list, in resolve
+    right: u32,         // next node of the right run
+    left_size: u32,     // nodes that the left run has left
+    right_size: u32,    // at most so many in the right run
+    run: u32,           // nodes in a run of this pass; 0: not begun
+    state: u32,
+}
+
+// Pixels that are not done yet ask for another dispatch.
+struct Work {
+    unfinished: atomic<u32>,
+    pixels: array<Progress>,
+}
+
+@group(0) @binding(11) var<storage, read_write> progress: Work;
+
+// A dispatch follows a list for so many steps, and the next one goes on. Drivers
+// end what takes too long: llvmpipe leaves every loop of an invocation after 65,535
+// iterations in all, GPUs reset after some seconds.
+const STEPS: u32 = 16384u;
+
+const FIND: u32 = 0u;       // looking for the end of the left run
+const MERGE: u32 = 1u;      // taking the smaller of two
+const DONE: u32 = 2u;
+const SEVERAL: u32 = 4u;    // flag: this pass has merged more than one pair
+
 // Stage sort: merges runs of 1, 2, 4, … nodes by relinking them, so that lists of
 // any length are sorted in place, in n log n steps. Lists of one are left alone.
-// No list is longer than the capacity: a longer walk is a damaged list, and is
-// left for the comparison to find rather than followed for ever.
 @compute @workgroup_size(WORKGROUP)
 fn sort(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    var head = atomicLoad(&heads[id.x]);
-    let length = length_of(head);
-    if length > frame.capacity {
+    var p = progress.pixels[id.x];
+    if p.run == 0u {
+        p = begin(atomicLoad(&heads[id.x]));
+    }
+    for (var i = 0u; i < STEPS && p.state != DONE; i += 1u) {
+        if (p.state & MERGE) == 0u {
+            find_step(&p);
+        } else {
+            merge_step(&p);
+        }
+    }
+    progress.pixels[id.x] = p;
+    if p.state == DONE {
+        atomicStore(&heads[id.x], p.merged);
+    } else {
+        atomicStore(&progress.unfinished, 1u);
+    }
+}
+
+// The first pass over a list; done at once if there is nothing to sort.
+fn begin(head: u32) -> Progress {
+    var sorted = head == EOL;
+    if !sorted {
+        sorted = nodes[head].next == EOL;
+    }
+    if sorted {
+        return Progress(head, EOL, EOL, EOL, 0u, 0u, 1u, DONE);
+    }
+    return Progress(EOL, EOL, head, head, 0u, 0u, 1u, FIND);
+}
+
+// One step of `right` past the left run.
+fn find_step(p: ptr<function, Progress>) {
+    if (*p).left_size < (*p).run && (*p).right != EOL {
+        (*p).right = nodes[(*p).right].next;
+        (*p).left_size += 1u;
+    } else {
+        (*p).right_size = (*p).run;
+        (*p).state |= MERGE;
+    }
+}
+
+// Takes a node of the left or right run, or goes on to the next pair.
+fn merge_step(p: ptr<function, Progress>) {
+    let no_right = (*p).right_size == 0u || (*p).right == EOL;
+    if (*p).left_size == 0u && no_right {
+        next_pair(p);
         return;
     }
-    for (var run = 1u; run < length; run *= 2u) {
-        head = merge_runs(head, run);
+    var take_right = (*p).left_size == 0u;
+    if !take_right && !no_right {
+        take_right = before((*p).right, (*p).left);
     }
-    atomicStore(&heads[id.x], head);
+    var taken = (*p).left;
+    if take_right {
+        taken = (*p).right;
+        (*p).right = nodes[taken].next;
+        (*p).right_size -= 1u;
+    } else {
+        (*p).left = nodes[taken].next;
+        (*p).left_size -= 1u;
+    }
+    if (*p).tail == EOL {
+        (*p).merged = taken;
+    } else {
+        nodes[(*p).tail].next = taken;
+    }
+    (*p).tail = taken;
 }
 
-// Number of nodes, or capacity + 1 for a list that does not end.
-fn length_of(head: u32) -> u32 {
-    var length = 0u;
-    for (var at = head; at != EOL && length <= frame.capacity; at = nodes[at].next) {
-        length += 1u;
+// The next pair of runs; after the last, the next pass; after one pair in all, done.
+fn next_pair(p: ptr<function, Progress>) {
+    if (*p).right != EOL {
+        (*p).left = (*p).right;
+        (*p).left_size = 0u;
+        (*p).state = FIND | SEVERAL;
+        return;
     }
-    return length;
-}
-
-// Merges neighbouring sorted runs of a list pairwise; gives the new head.
-fn merge_runs(head: u32, run: u32) -> u32 {
-    var merged = EOL;
-    var tail = EOL;
-    var left = head;
-    while left != EOL {
-        var right = left;
-        var left_size = 0u;
-        while left_size < run && right != EOL {
-            right = nodes[right].next;
-            left_size += 1u;
-        }
-        var right_size = run;
-        while left_size > 0u || (right_size > 0u && right != EOL) {
-            var taken = left;
-            if left_size == 0u || (right_size > 0u && right != EOL && before(right, left)) {
-                taken = right;
-                right = nodes[right].next;
-                right_size -= 1u;
-            } else {
-                left = nodes[left].next;
-                left_size -= 1u;
-            }
-            if tail == EOL {
-                merged = taken;
-            } else {
-                nodes[tail].next = taken;
-            }
-            tail = taken;
-        }
-        left = right;
+    nodes[(*p).tail].next = EOL;
+    if ((*p).state & SEVERAL) == 0u {
+        (*p).state = DONE;
+        return;
     }
-    nodes[tail].next = EOL;
-    return merged;
+    let head = (*p).merged;
+    *p = Progress(EOL, EOL, head, head, 0u, 0u, 2u * (*p).run, FIND);
 }
 
 // Stage resolve: the sorted list over what lies behind it, nearest first. Layers
-// at or behind the opaque surface are not read.
+// at or behind the opaque surface are not read. Between dispatches the picture
+// holds the sum so far and the transmittance.
 @compute @workgroup_size(WORKGROUP)
 fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    var behind = frame.background.rgb;
-    let prim = atomicLoad(&opaque_prim[id.x]);
-    if prim != NOTHING {
-        behind = faces[prim].rgb;
+    var p = progress.pixels[id.x];
+    var seen = picture[id.x];
+    if p.run == 0u {
+        p = Progress(EOL, EOL, atomicLoad(&heads[id.x]), EOL, 0u, 0u, 1u, FIND);
+        seen = vec4(0.0, 0.0, 0.0, 1.0);
+    }
+    if p.state == DONE {
+        return;
     }
     let end = atomicLoad(&opaque_key[id.x]);
-    var sum = vec3(0.0);
-    var transmittance = 1.0;
-    var steps = 0u;
-    var at = atomicLoad(&heads[id.x]);
-    while at != EOL && nodes[at].key < end && steps < frame.capacity {
-        let layer = colours[at];
-        sum += transmittance * layer.a * layer.rgb;
-        transmittance *= 1.0 - layer.a;
-        at = nodes[at].next;
-        steps += 1u;
+    var i = 0u;
+    while i < STEPS && p.left != EOL && nodes[p.left].key < end {
+        let layer = colours[p.left];
+        seen = vec4(seen.rgb + seen.a * layer.a * layer.rgb, seen.a * (1.0 - layer.a));
+        p.left = nodes[p.left].next;
+        i += 1u;
     }
-    picture[id.x] = vec4(sum + transmittance * behind, 1.0);
+    if i == STEPS {
+        atomicStore(&progress.unfinished, 1u);
+    } else {
+        seen = vec4(seen.rgb + seen.a * behind(id.x), 1.0);
+        p.state = DONE;
+    }
+    picture[id.x] = seen;
+    progress.pixels[id.x] = p;
+}
+
+// What lies behind a pixel's layers.
+fn behind(pixel: u32) -> vec3<f32> {
+    let prim = atomicLoad(&opaque_prim[pixel]);
+    if prim == NOTHING {
+        return frame.background.rgb;
+    }
+    return faces[prim].rgb;
 }

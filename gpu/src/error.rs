@@ -39,6 +39,14 @@ pub enum GpuError {
         /// What the adapter offers.
         limit: u64,
     },
+    /// A kernel that follows lists did not come to their ends.
+    #[error("{adapter}: stage {stage} follows a list that does not end")]
+    Endless {
+        /// The adapter.
+        adapter: String,
+        /// Which kernel.
+        stage: &'static str,
+    },
     /// WGSL that does not link, parse or validate.
     #[error(transparent)]
     Wgsl(#[from] crate::wgsl::WgslError),

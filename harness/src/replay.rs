@@ -243,7 +243,9 @@ impl<'a> Run<'a> {
     }
 
     fn embree(&mut self, spec: &Observed<Spec, SpecRun>) {
-        let budget = self.loaded.file.budget.edge.0;
+        // A bare mesh states no budget: its share is printed, not judged.
+        let stated = &self.loaded.file.budget;
+        let budget = (!self.loaded.bare).then_some(stated.edge.0);
         let seen = embree::run(spec, budget, &mut self.rows);
         if let Some(seen) = seen.filter(|_| self.options.pictures) {
             self.show("embree", || {
@@ -296,8 +298,11 @@ impl<'a> Run<'a> {
                 Ok(())
             }
             Err(error) => {
-                let lost = matches!(error, GpuError::Lost { .. });
-                let cause = lost.then_some(Cause::DeviceLost);
+                let cause = match error {
+                    GpuError::Lost { .. } => Some(Cause::DeviceLost),
+                    GpuError::Endless { .. } => Some(Cause::Cycle),
+                    _ => None,
+                };
                 self.rows
                     .fail("leg", "spec", &label, cause, error.to_string());
                 Ok(())
@@ -360,6 +365,7 @@ impl<'a> Run<'a> {
             &self.loaded.scene,
             spec,
             adapter,
+            path,
             judged.then_some(&mut self.rows),
         )
     }

@@ -36,6 +36,8 @@ pub struct Loaded {
     pub family: String,
     /// The scene as written.
     pub file: SceneFile,
+    /// Whether it is a bare mesh, with everything else by default.
+    pub bare: bool,
     /// The scene as the legs see it.
     pub scene: Scene,
     /// What was loaded.
@@ -128,6 +130,7 @@ pub fn load_entry(entry: &Entry, seed: Option<u64>) -> Result<Loaded, LoadError>
     stats.sha256 = source::hex(&digest.finalize());
     Ok(Loaded {
         name: entry.name.clone(),
+        bare: corpus::is_mesh(path),
         family: entry.family.clone(),
         file: parsed.file,
         scene,

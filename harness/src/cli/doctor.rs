@@ -10,10 +10,14 @@ use crate::replay::gpu::Adapter;
 use crate::{corpus, embree};
 
 /// What the project found out about drivers the hard way.
-const KNOWN: [(&str, &str); 2] = [
+const KNOWN: [(&str, &str); 3] = [
     (
         "llvmpipe",
         "drops side effects of fragments that a later opaque colour write covers",
+    ),
+    (
+        "llvmpipe",
+        "leaves every loop of an invocation after 65,535 iterations in all",
     ),
     (
         "-gl",

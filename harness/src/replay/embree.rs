@@ -14,7 +14,7 @@ use crate::row::Class;
 /// Asks Embree for its vote and adds the row; gives the scene for a picture.
 pub fn run(
     spec: &Observed<Spec, SpecRun>,
-    edge_budget: f64,
+    edge_budget: Option<f64>,
     rows: &mut Rows,
 ) -> Option<EmbreeScene> {
     let primitives = &spec.value.primitives;
@@ -56,12 +56,12 @@ pub fn run(
     Some(embree.value)
 }
 
-fn judge(vote: &compare::embree::EmbreeVote, edge_budget: f64) -> Judgement {
+fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgement {
     let mut judgement = Judgement {
         compared: vote.pairs,
         causes: vote.causes(),
         admitted: vote.admitted(),
-        admitted_budget: Some(edge_budget),
+        admitted_budget: edge_budget,
         error_over_bound: Some(vote.error_over_bound),
         described: vote.first.iter().map(ToString::to_string).collect(),
         note: vote.to_string(),
