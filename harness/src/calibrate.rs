@@ -60,10 +60,18 @@ pub fn calibrate(gpu: &Gpu, kernels: &Kernels) -> Result<Grid, GpuError> {
 /// coarser one moves them.
 fn probe(bits: u32) -> Primitives {
     const TRIANGLES: u32 = 600;
-    let size = Size { width: 127, height: 93 };
+    let size = Size {
+        width: 127,
+        height: 93,
+    };
     let mut random = SplitMix(0x7121_7974);
-    let mut primitives =
-        Primitives { size, bits, snapped: Vec::new(), prims: Vec::new(), source: Vec::new() };
+    let mut primitives = Primitives {
+        size,
+        bits,
+        snapped: Vec::new(),
+        prims: Vec::new(),
+        source: Vec::new(),
+    };
     for t in 0..TRIANGLES {
         let reach = [4, 24, 160, 1200][t as usize % 4];
         let centre = [random.below(160) - 16, random.below(120) - 16];
@@ -73,10 +81,16 @@ fn probe(bits: u32) -> Primitives {
                 let low = guard_origin(if axis == 0 { size.width } else { size.height });
                 let pixel = pixel.clamp(low, low + GUARD - 1);
                 let through_samples = t % 5 == 0;
-                let fraction = if through_samples { 1 << (bits - 1) } else { random.below(1 << bits) };
+                let fraction = if through_samples {
+                    1 << (bits - 1)
+                } else {
+                    random.below(1 << bits)
+                };
                 (pixel << bits) + fraction
             });
-            primitives.snapped.push([corner[0], corner[1], random.below(i32::MAX)]);
+            primitives
+                .snapped
+                .push([corner[0], corner[1], random.below(i32::MAX)]);
         }
         primitives.prims.push([3 * t, 3 * t + 1, 3 * t + 2]);
         primitives.source.push(t);

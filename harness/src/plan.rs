@@ -54,7 +54,11 @@ impl Plan {
             "cover",
             opaque > 0,
             format!("{opaque} opaque triangles are in no list"),
-            if any { "the lists hold every fragment" } else { "no triangles" },
+            if any {
+                "the lists hold every fragment"
+            } else {
+                "no triangles"
+            },
         );
         let opaque_runs = decide(
             "opaque",
@@ -78,7 +82,13 @@ impl Plan {
                 (false, _) => "nothing is skipped: hidden fragments are stored".into(),
             },
         });
-        Self { passes, opaque: opaque_runs, lists, depth_test, cover }
+        Self {
+            passes,
+            opaque: opaque_runs,
+            lists,
+            depth_test,
+            cover,
+        }
     }
 
     /// Why a pass does not run; `None` if it does.
