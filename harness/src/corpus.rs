@@ -123,7 +123,8 @@ fn outside(entries: &[Entry], pattern: &str) -> Result<Entry, InputError> {
     };
     // What looks like a file is taken for one even if it is missing: the loader
     // then says so, which helps more than "no scene matches".
-    if !path.exists() && !(is_mesh(&path) || has_extension(&path, "toml")) {
+    let file = path.exists() || is_mesh(&path) || has_extension(&path, "toml");
+    if !file {
         let message = "matches no scene of the corpus (see `triptych list`) and is no file";
         return Err(InputError::new(given, message));
     }

@@ -3,6 +3,8 @@
 mod flat;
 mod scatter;
 mod solid;
+#[cfg(test)]
+mod tests;
 
 use serde::Deserialize;
 

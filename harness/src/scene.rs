@@ -6,6 +6,8 @@ mod fit;
 mod flatten;
 mod shade;
 mod source;
+#[cfg(test)]
+mod tests;
 pub mod value;
 
 use std::path::Path;

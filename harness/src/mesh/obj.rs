@@ -99,38 +99,37 @@ impl<'a> Reader<'a> {
     }
 
     fn statement(&mut self, s: &Statement) -> Result<(), InputError> {
-        let error = |message: String| InputError::at(self.path, s.line, message);
         let text = &*s.text;
         if let Some(byte) = text.iter().find(|b| b.is_ascii_control() && !is_blank(**b)) {
             let message = format!("byte {byte:#04x} is not text; an OBJ file is expected");
-            return Err(error(message));
+            return Err(self.error(s.line, message));
         }
         let Some(keyword) = words(text).next() else {
             return Ok(());
         };
         let values = words(text).skip(1);
         match keyword {
-            b"v" => self
-                .vertex(values)
-                .map_err(|e| InputError::at(self.path, s.line, e)),
-            b"vt" => Ok(self.faces.textures += 1),
-            b"vn" => Ok(self.faces.normals += 1),
-            b"f" | b"fo" => self.face(s.line, values),
-            b"l" => Ok(self.notes.lines += 1),
-            b"p" => Ok(self.notes.points += 1),
-            b"usemtl" => {
-                self.use_material(rest(text));
-                Ok(())
+            b"v" => self.vertex(values).map_err(|e| self.error(s.line, e))?,
+            b"vt" => self.faces.textures += 1,
+            b"vn" => self.faces.normals += 1,
+            b"f" | b"fo" => self.face(s.line, values)?,
+            b"l" => self.notes.lines += 1,
+            b"p" => self.notes.points += 1,
+            b"usemtl" => self.use_material(rest(text)),
+            b"mtllib" => {
+                let warnings = &mut self.notes.warnings;
+                self.defined.add(self.path, &rest(text), warnings)?;
             }
-            b"mtllib" => self
-                .defined
-                .add(self.path, &rest(text), &mut self.notes.warnings),
-            b"ply" if self.vertices == 0 => Err(error("is a PLY file named .obj".to_owned())),
-            _ => {
-                self.other(s.line, keyword);
-                Ok(())
+            b"ply" if self.vertices == 0 => {
+                return Err(self.error(s.line, "is a PLY file named .obj".to_owned()));
             }
+            _ => self.other(s.line, keyword),
         }
+        Ok(())
+    }
+
+    fn error(&self, line: usize, message: String) -> InputError {
+        InputError::at(self.path, line, message)
     }
 
     /// `v x y z`, `v x y z w` or `v x y z r g b`.

@@ -132,3 +132,35 @@ pub(super) fn number(word: &[u8]) -> Result<f32, String> {
         None => Err(format!("{} is not a number", quote(word))),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joined(text: &[u8]) -> Vec<(usize, String)> {
+        let show = |s: Statement| (s.line, String::from_utf8_lossy(&s.text).trim().to_owned());
+        statements(text)
+            .map(show)
+            .filter(|(_, t)| !t.is_empty())
+            .collect()
+    }
+
+    #[test]
+    fn statements_keep_the_numbers_of_their_lines() {
+        let text = b"\xef\xbb\xbfa\r\n\rb \\\nc\\\r\nd # e\n# f\\\ng#h i\nv 1#2\n";
+        let expected = [(1, "a"), (3, "b  c d"), (7, "g#h i"), (8, "v 1")];
+        let expected = expected.map(|(line, text)| (line, text.to_owned()));
+        assert_eq!(joined(text), expected, "line ends, continuations, comments");
+    }
+
+    #[test]
+    fn shown_values_are_short_and_printable() {
+        assert_eq!(
+            quote(b"a\tb\x1b"),
+            "`a\\tb\\u{1b}`",
+            "control characters are escaped"
+        );
+        let long = quote(&[b'x'; 1000]);
+        assert_eq!(long.len(), SHOWN + 5, "{long}");
+    }
+}

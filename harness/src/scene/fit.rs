@@ -21,7 +21,9 @@ pub(super) fn camera<I: Iterator<Item = [f64; 3]>>(points: impl Fn() -> I, aspec
         let low = [0, 1, 2].map(|i| low[i].min(p[i]));
         Some([low, [0, 1, 2].map(|i| high[i].max(p[i]))])
     });
-    let [low, high] = bounds.unwrap_or([[-0.5; 3], [0.5; 3]]);
+    let Some([low, high]) = bounds else {
+        return camera(unit_cube, aspect);
+    };
     let centre = add(scale(low, 0.5), scale(high, 0.5));
     // A single point has no size, and far from the origin a tiny one would drown in
     // rounding: 1e-9 of the distance leaves 23 bits for the picture.
@@ -43,7 +45,7 @@ pub(super) fn camera<I: Iterator<Item = [f64; 3]>>(points: impl Fn() -> I, aspec
     // At least a tenth of the radius is left in front of the nearest point.
     let distance = points().map(reach).fold(1.1 * radius, f64::max);
     let nearest = points().map(|p| dot(sub(p, centre), back));
-    let nearest = nearest.fold(-radius, f64::max);
+    let nearest = nearest.fold(f64::NEG_INFINITY, f64::max);
     let distance = distance.max(nearest + 0.1 * radius);
     Camera {
         eye: add(centre, scale(back, distance)),
@@ -53,4 +55,9 @@ pub(super) fn camera<I: Iterator<Item = [f64; 3]>>(points: impl Fn() -> I, aspec
         near: 0.9 * (distance - nearest),
         far: distance + 1.01 * radius,
     }
+}
+
+/// Two opposite corners of the unit cube around the origin.
+fn unit_cube() -> std::array::IntoIter<[f64; 3], 2> {
+    [[-0.5; 3], [0.5; 3]].into_iter()
 }

@@ -114,7 +114,10 @@ fn place<'a>(
     let world = |t: &super::file::Transform| matrix(t.scale, t.rotate, t.translate).times(&own);
     let worlds: Vec<Matrix> = e.instances.iter().map(world).collect();
     let entries = worlds.iter().flat_map(|m| m.rows.iter().flatten());
-    if let Some(x) = entries.into_iter().find(|x| !(x.abs() <= PLACEMENT_MAX)) {
+    if let Some(x) = entries
+        .into_iter()
+        .find(|x| x.is_nan() || x.abs() > PLACEMENT_MAX)
+    {
         let message = format!("the placement's matrix has {x:e}, beyond {PLACEMENT_MAX:e}");
         return Err(parsed.error(entry.span(), message).into());
     }
@@ -240,7 +243,12 @@ fn append(
     let (instance, vertex) = (row(scene.instances.len()), row(scene.vertices.len()));
     for (number, world) in (instance..).zip(&placed.worlds) {
         let clip = view.times(world);
-        if let Some(x) = clip.rows.iter().flatten().find(|x| !(x.abs() <= ENTRY_MAX)) {
+        if let Some(x) = clip
+            .rows
+            .iter()
+            .flatten()
+            .find(|x| x.is_nan() || x.abs() > ENTRY_MAX)
+        {
             let message = format!("placement and camera together have {x:e}, beyond {ENTRY_MAX:e}");
             return Err(parsed.error(placed.entry.span(), message));
         }
