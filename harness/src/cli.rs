@@ -6,6 +6,7 @@ mod list;
 mod plan;
 mod replay;
 mod report;
+mod run_info;
 
 use std::process::ExitCode;
 

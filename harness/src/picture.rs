@@ -11,6 +11,7 @@ mod colour;
 
 use std::io::Cursor;
 
+use serde::{Deserialize, Serialize};
 use triptych_spec::scene::Size;
 
 pub use causes::{Mark, causes, swatch};
@@ -23,9 +24,10 @@ pub const SIDE_MAX: u32 = 640;
 const NOT_FINITE: [u8; 3] = [255, 0, 255];
 
 /// A picture, encoded, and what a reader must know to read it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Image {
-    /// PNG, 8-bit sRGB.
+    /// PNG, 8-bit sRGB; kept in a file of its own.
+    #[serde(skip)]
     pub png: Vec<u8>,
     /// Width of the PNG.
     pub width: u32,
@@ -38,7 +40,7 @@ pub struct Image {
 }
 
 /// What the colours of a picture mean.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Legend {
     /// They are the scene's own.
     Colours,

@@ -3,18 +3,20 @@
 pub mod embree;
 pub mod facts;
 pub mod gpu;
+pub mod pictures;
 pub mod rows;
 pub mod skips;
 pub mod spec;
 pub mod vertex;
 
-use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
+use crate::cache::{Cache, Unit};
 use crate::cause::Cause;
 use crate::compare::{Judgement, compare};
 use crate::corpus::Entry;
@@ -22,6 +24,7 @@ use crate::dump::Dump;
 use crate::error::InputError;
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
+use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::value::Capacity;
 use crate::scene::{LoadError, Loaded, expect, load_entry};
@@ -49,6 +52,8 @@ pub struct Options {
     pub dump: Option<Dump>,
     /// Keep the legs' pictures for a report.
     pub pictures: bool,
+    /// Where results of legs are kept that need not run again.
+    pub cache: Option<Cache>,
 }
 
 impl Default for Options {
@@ -62,17 +67,9 @@ impl Default for Options {
             seed: None,
             dump: None,
             pictures: false,
+            cache: None,
         }
     }
-}
-
-/// A leg's picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
-    /// The leg.
-    pub leg: String,
-    /// Linear colours, row by row.
-    pub pixels: Vec<[f32; 3]>,
 }
 
 /// What came of one scene.
@@ -95,10 +92,10 @@ pub struct Outcome {
     pub saved_ms: Option<f64>,
     /// What the spec found, for a snapshot.
     pub facts: Option<Facts>,
-    /// Pictures of the legs.
-    pub shown: Vec<Shown>,
-    /// Layers per pixel, by the spec.
-    pub layers: Vec<u32>,
+    /// Pictures of the legs, then maps.
+    pub pictures: Vec<Picture>,
+    /// What went wrong beside the point, such as a cache that cannot be written.
+    pub remarks: Vec<String>,
 }
 
 /// Replays a scene.
@@ -152,8 +149,8 @@ impl Outcome {
             plan: None,
             saved_ms: None,
             facts: None,
-            shown: Vec::new(),
-            layers: Vec::new(),
+            pictures: Vec::new(),
+            remarks: Vec::new(),
         }
     }
 }
@@ -164,9 +161,13 @@ struct Run<'a> {
     adapters: &'a [Adapter],
     options: &'a Options,
     plan: Plan,
+    /// The spec's results on the grid that was asked for last.
+    spec: Option<Rc<Observed<Spec, SpecRun>>>,
     rows: Rows,
-    shown: Vec<Shown>,
+    pictures: Vec<Picture>,
     saved_ms: Option<f64>,
+    facts: Option<Facts>,
+    remarks: Vec<String>,
 }
 
 impl<'a> Run<'a> {
@@ -176,25 +177,27 @@ impl<'a> Run<'a> {
             adapters,
             options,
             plan: Plan::new(&loaded.scene, options.skip),
+            spec: None,
             rows: Rows::new(&loaded.name, &loaded.family),
-            shown: Vec::new(),
+            pictures: Vec::new(),
             saved_ms: None,
+            facts: None,
+            remarks: Vec::new(),
         }
     }
 
     fn all(mut self) -> Result<Outcome, Stop> {
-        let spec = self.spec(SUBPIXEL_BITS)?;
-        self.analytic(&spec);
-        self.show("spec", || spec.value.picture());
-        self.dump_spec(&spec)?;
-        let facts = Facts::new(self.loaded, &spec.value, &self.plan);
-        let layers = layers(&spec.value);
+        self.unit(&["spec"], Self::spec_alone)?;
         if self.options.embree {
-            self.embree(&spec);
+            self.unit(&["embree"], Self::embree)?;
         }
         if self.options.gpu {
-            self.gpu(spec)?;
+            self.gpu()?;
         }
+        let causes = pictures::causes(self.spec.as_deref(), &self.rows.marks);
+        self.pictures
+            .extend(causes.filter(|_| self.options.pictures));
+        self.rows.rows.sort_by_key(column);
         Ok(Outcome {
             name: self.loaded.name.clone(),
             purpose: self.loaded.file.purpose.0.clone(),
@@ -204,18 +207,92 @@ impl<'a> Run<'a> {
             marks: self.rows.marks,
             plan: Some(self.plan),
             saved_ms: self.saved_ms,
-            facts: Some(facts),
-            shown: self.shown,
-            layers,
+            facts: self.facts,
+            pictures: self.pictures,
+            remarks: self.remarks,
         })
     }
 
-    fn spec(&self, bits: u32) -> Result<Observed<Spec, SpecRun>, Stop> {
+    /// Does a piece of work, or takes its result from the cache. `inputs` are what it
+    /// depends on beside the scene, the options and the code.
+    fn unit(
+        &mut self,
+        inputs: &[&str],
+        work: impl FnOnce(&mut Self) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        let Some(cache) = self
+            .options
+            .cache
+            .as_ref()
+            .filter(|_| self.options.dump.is_none())
+        else {
+            return work(self);
+        };
+        let Options {
+            from,
+            skip,
+            paths,
+            pictures,
+            ..
+        } = self.options;
+        let options = format!("{from:?} {skip} {paths:?} {pictures}");
+        let mut all = vec![
+            self.loaded.name.as_str(),
+            &self.loaded.stats.sha256,
+            &options,
+        ];
+        all.extend(inputs);
+        let key = cache.key(&all);
+        if let Some(unit) = cache.get(&key) {
+            self.rows.rows.extend(unit.rows);
+            self.pictures.extend(unit.pictures);
+            self.saved_ms = self.saved_ms.or(unit.saved_ms);
+            return Ok(());
+        }
+        let (rows, pictures) = (self.rows.rows.len(), self.pictures.len());
+        let saved_ms = self.saved_ms.take();
+        work(self)?;
+        let unit = Unit {
+            rows: self.rows.rows[rows..].to_vec(),
+            pictures: self.pictures[pictures..].to_vec(),
+            saved_ms: self.saved_ms,
+        };
+        self.saved_ms = self.saved_ms.or(saved_ms);
+        if let Err(error) = cache.put(&key, &unit) {
+            self.remarks.push(format!("cache: {error}"));
+        }
+        Ok(())
+    }
+
+    /// The spec's results on a grid, computed when first asked for. Only the last
+    /// grid's are held: they are large.
+    fn spec(&mut self, bits: u32) -> Result<Rc<Observed<Spec, SpecRun>>, Stop> {
+        if let Some(spec) = self
+            .spec
+            .as_ref()
+            .filter(|s| s.value.primitives.bits == bits)
+        {
+            return Ok(spec.clone());
+        }
+        self.spec = None;
         let scene = &self.loaded.scene;
         let (primitives, vertex) = timed(|| primitives(scene, bits));
         let mut run = SpecRun::new(scene, primitives, &self.plan).map_err(Stop::Input)?;
         run.times.vertex = vertex;
-        Ok(Observed::new("spec", run))
+        let spec = Rc::new(Observed::new("spec", run));
+        self.spec = Some(spec.clone());
+        Ok(spec)
+    }
+
+    /// What needs no other leg.
+    fn spec_alone(&mut self) -> Result<(), Stop> {
+        let spec = self.spec(SUBPIXEL_BITS)?;
+        self.analytic(&spec);
+        self.facts = Some(Facts::new(self.loaded, &spec.value, &self.plan));
+        if self.options.pictures {
+            self.pictures.extend(pictures::spec(&spec.value));
+        }
+        self.dump_spec(&spec).map_err(Stop::Dump)
     }
 
     /// Holds the spec against what the scene's author worked out by hand.
@@ -242,55 +319,61 @@ impl<'a> Run<'a> {
         self.rows.add("expect", spec, &analytic, judgement);
     }
 
-    fn embree(&mut self, spec: &Observed<Spec, SpecRun>) {
+    fn embree(&mut self) -> Result<(), Stop> {
+        let spec = self.spec(SUBPIXEL_BITS)?;
         // A bare mesh states no budget: its share is printed, not judged.
         let stated = &self.loaded.file.budget;
         let budget = (!self.loaded.bare).then_some(stated.edge.0);
-        let seen = embree::run(spec, budget, &mut self.rows);
+        let seen = embree::run(&spec, budget, &mut self.rows);
         if let Some(seen) = seen.filter(|_| self.options.pictures) {
-            self.show("embree", || {
-                embree::picture(&self.loaded.scene, &spec.value, &seen)
-            });
+            let pixels = embree::picture(&self.loaded.scene, &spec.value, &seen);
+            self.pictures
+                .push(pictures::leg("embree", self.loaded.scene.size, &pixels));
         }
+        Ok(())
     }
 
-    /// Every adapter and path, in groups of legs that share a sub-pixel grid.
-    fn gpu(&mut self, spec: Observed<Spec, SpecRun>) -> Result<(), Stop> {
+    /// Every adapter and path; legs that share a sub-pixel grid follow each other.
+    fn gpu(&mut self) -> Result<(), Stop> {
         if self.adapters.is_empty() {
             let reason = "no adapter; `triptych doctor` says what is missing".to_owned();
             self.rows.skip("all", "spec", "gpu", Class::Exact, reason);
             return Ok(());
         }
-        let mut by_bits: BTreeMap<u32, Vec<(&'a Adapter, Path)>> = BTreeMap::new();
-        for adapter in self.adapters {
-            for path in &self.options.paths {
-                by_bits
-                    .entry(adapter.bits(*path))
-                    .or_default()
-                    .push((adapter, *path));
-            }
-        }
-        let mut spec = Some(spec);
-        for (bits, legs) in by_bits.into_iter().rev() {
-            let spec = match spec.take().filter(|s| s.value.primitives.bits == bits) {
-                Some(spec) => spec,
-                None => self.spec(bits)?,
-            };
-            for (adapter, path) in legs {
-                self.leg(&spec, adapter, path)?;
-            }
+        let legs = self
+            .adapters
+            .iter()
+            .flat_map(|adapter| self.options.paths.iter().map(move |path| (adapter, *path)));
+        let mut legs: Vec<(&Adapter, Path)> = legs.collect();
+        legs.sort_by_key(|(adapter, path)| std::cmp::Reverse(adapter.bits(*path)));
+        for (adapter, path) in legs {
+            let wgpu::AdapterInfo {
+                name,
+                driver,
+                driver_info,
+                ..
+            } = &adapter.gpu.info;
+            let bits = adapter.bits(path).to_string();
+            let measures = self.measures_skips(adapter, path).to_string();
+            let grid = format!("{:?}", adapter.grid);
+            let inputs = [
+                name,
+                driver,
+                driver_info,
+                path.name(),
+                &bits,
+                &grid,
+                &measures,
+            ];
+            self.unit(&inputs, |run| run.leg(adapter, path))?;
         }
         Ok(())
     }
 
-    fn leg(
-        &mut self,
-        spec: &Observed<Spec, SpecRun>,
-        adapter: &'a Adapter,
-        path: Path,
-    ) -> Result<(), Stop> {
+    fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
+        let spec = self.spec(adapter.bits(path))?;
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-        match self.leg_or_error(spec, adapter, path) {
+        match self.leg_or_error(&spec, adapter, path) {
             Ok(stop) => stop,
             Err(error @ GpuError::Limit { .. }) => {
                 self.rows
@@ -313,7 +396,7 @@ impl<'a> Run<'a> {
     fn leg_or_error(
         &mut self,
         spec: &Observed<Spec, SpecRun>,
-        adapter: &'a Adapter,
+        adapter: &Adapter,
         path: Path,
     ) -> Result<Result<(), Stop>, GpuError> {
         let (scene, plan) = (&self.loaded.scene, self.plan.clone());
@@ -343,7 +426,11 @@ impl<'a> Run<'a> {
         if self.options.skip && self.measures_skips(adapter, path) {
             self.saved_ms = skips::run(&leg, &seen, &mut self.rows)?;
         }
-        self.show(&seen.label, || seen.value.abuffer.image.clone());
+        if self.options.pictures && seen.value.sorted.is_some() {
+            let image = &seen.value.abuffer.image;
+            self.pictures
+                .push(pictures::leg(&seen.label, scene.size, image));
+        }
         Ok(self.dump_gpu(&leg.spec.value, &seen).map_err(Stop::Dump))
     }
 
@@ -387,15 +474,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn show(&mut self, leg: &str, pixels: impl FnOnce() -> Vec<[f32; 3]>) {
-        if self.options.pictures {
-            self.shown.push(Shown {
-                leg: leg.into(),
-                pixels: pixels(),
-            });
-        }
-    }
-
     fn dump_spec(&self, spec: &Observed<Spec, SpecRun>) -> std::io::Result<()> {
         let Some(dump) = &self.options.dump else {
             return Ok(());
@@ -430,16 +508,13 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Layers per pixel: transparent ones, and one for an opaque surface.
-fn layers(spec: &SpecRun) -> Vec<u32> {
-    let lists = spec.sorted.offsets.windows(2).map(|w| w[1] - w[0]);
-    let opaque = spec
-        .opaque
-        .prim
-        .iter()
-        .map(|p| u32::from(*p != triptych_spec::abuffer::NOTHING));
-    lists
-        .zip(opaque)
-        .map(|(list, opaque)| list + opaque)
-        .collect()
+/// Where a row stands: closed form, Embree, then GPU legs by name.
+fn column(row: &Row) -> (u8, String) {
+    let rank = match row.b.as_str() {
+        "closed form" => 0,
+        "embree" => 1,
+        leg if row.a == "spec" && leg.starts_with("gpu") => 2,
+        _ => 3,
+    };
+    (rank, row.b.clone())
 }

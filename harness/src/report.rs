@@ -18,6 +18,7 @@ use std::io;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::digest;
@@ -87,7 +88,7 @@ pub struct SceneReport {
 ///
 /// Pictures of GPU legs that are the same byte for byte are shown once, with all
 /// their titles.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     /// Which leg, or which map.
     pub title: String,

@@ -158,8 +158,10 @@ mod tests {
 
     #[test]
     fn a_small_share_is_not_nothing() {
-        let shares = [0.0, 1e-9, 0.000_12, 0.001, 0.05, 1.0].map(share);
-        let expected = ["0 %", "<0.001 %", "0.012 %", "0.100 %", "5.00 %", "100 %"];
+        let shares = [0.0, 1e-9, 0.000_009, 0.000_12, 0.001, 0.05, 1.0].map(share);
+        let expected = [
+            "0 %", "<0.001 %", "<0.001 %", "0.012 %", "0.100 %", "5.00 %", "100 %",
+        ];
         assert_eq!(shares, expected);
     }
 

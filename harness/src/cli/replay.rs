@@ -9,12 +9,15 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::Sources;
 
 use super::Verdict;
+use super::run_info::{run_info, scene_report};
+use crate::cache::Cache;
 use crate::dump::Dump;
 use crate::replay::gpu::{Adapter, From};
-use crate::replay::{Options, Outcome, replay};
+use crate::replay::{Options, replay};
+use crate::report::{self, ReportInput};
 use crate::row::Summary;
 use crate::terminal::{Reporter, SceneResult};
-use crate::{corpus, json};
+use crate::{corpus, embree, json};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -89,46 +92,94 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let entries = corpus::list(&corpus::root())?;
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
-    let options = args.options();
-    let adapters = if options.gpu {
-        Adapter::open_all(&args.adapter, &Sources::shipped(false))?
+    let mut options = args.options();
+    let adapters = args.adapters(&options)?;
+    let library = if options.embree {
+        Some(embree::library()?)
     } else {
-        Vec::new()
+        None
     };
-    if options.gpu && adapters.is_empty() && !args.adapter.is_empty() {
-        anyhow::bail!(
-            "no adapter is called {}; see `triptych doctor`",
-            args.adapter.join(" or ")
-        );
+    let out = corpus::root().with_file_name("reports").join("out");
+    if !args.no_cache && options.dump.is_none() {
+        options.cache = Some(Cache::open(&out.join("cache")).context("cannot open the cache")?);
     }
     let mut writer = match &args.json {
         Some(path) => Some(json::Writer::create(path).context("cannot write --json")?),
         None => None,
     };
     let mut reporter = Reporter::new(selected.len());
-    let mut rows = Vec::new();
+    let (mut rows, mut scenes) = (Vec::new(), Vec::new());
     for entry in &selected {
         reporter.scene_started(&entry.name);
         let outcome = replay(entry, &adapters, &options)?;
         if let Some(writer) = &mut writer {
             writer.rows(&outcome.rows)?;
         }
-        reporter.scene_done(&result(&outcome))?;
-        rows.extend(outcome.rows);
+        for remark in &outcome.remarks {
+            reporter.remark(remark)?;
+        }
+        rows.extend_from_slice(&outcome.rows);
+        reporter.scene_done(&SceneResult {
+            name: outcome.name.clone(),
+            purpose: outcome.purpose.clone(),
+            rows: outcome.rows.clone(),
+        })?;
+        scenes.push(scene_report(outcome));
     }
     let summary = Summary::of(&rows, start.elapsed().as_secs_f64());
     if let Some(writer) = writer {
         writer.finish(summary.seconds)?;
     }
-    reporter.finish(&summary, None)?;
-    Ok(if summary.diverging == 0 {
-        Verdict::Agree
+    let run = run_info(&adapters, library.as_ref(), summary.seconds);
+    let page = out.join("index.html");
+    report::write(&page, &ReportInput { run, scenes })
+        .with_context(|| format!("cannot write {}", page.display()))?;
+    reporter.finish(&summary, Some(&page))?;
+    if args.open {
+        open(&page)?;
+    }
+    verdict(&summary)
+}
+
+/// A run that compared nothing at all has not agreed on anything.
+fn verdict(summary: &Summary) -> anyhow::Result<Verdict> {
+    if summary.diverging > 0 {
+        return Ok(Verdict::Diverge);
+    }
+    anyhow::ensure!(
+        summary.compared > 0,
+        "nothing was compared; see what was skipped, and why"
+    );
+    Ok(Verdict::Agree)
+}
+
+fn open(page: &std::path::Path) -> anyhow::Result<()> {
+    let opener = if cfg!(target_os = "macos") {
+        "open"
     } else {
-        Verdict::Diverge
-    })
+        "xdg-open"
+    };
+    let status = std::process::Command::new(opener).arg(page).status();
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => anyhow::bail!("{opener} {}: {status}", page.display()),
+        Err(error) => anyhow::bail!("{opener} {}: {error}", page.display()),
+    }
 }
 
 impl Args {
+    fn adapters(&self, options: &Options) -> anyhow::Result<Vec<Adapter>> {
+        if !options.gpu {
+            return Ok(Vec::new());
+        }
+        let adapters = Adapter::open_all(&self.adapter, &Sources::shipped(false))?;
+        if adapters.is_empty() && !self.adapter.is_empty() {
+            let wanted = self.adapter.join(" or ");
+            anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
+        }
+        Ok(adapters)
+    }
+
     fn options(&self) -> Options {
         let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
         Options {
@@ -149,14 +200,7 @@ impl Args {
             seed: self.seed,
             dump: self.dump.as_ref().map(Dump::new),
             pictures: true,
+            cache: None,
         }
-    }
-}
-
-fn result(outcome: &Outcome) -> SceneResult {
-    SceneResult {
-        name: outcome.name.clone(),
-        purpose: outcome.purpose.clone(),
-        rows: outcome.rows.clone(),
     }
 }

@@ -2,19 +2,39 @@
 
 use std::path::PathBuf;
 
+use anyhow::Context;
+
 use super::Verdict;
+use super::run_info::run_info;
+use crate::report::{self, ReportInput};
+use crate::{corpus, json};
 
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  triptych report shard1.json shard2.json --output report.html")]
 pub struct Args {
     /// JSON lines written by `replay --json`
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Where the report goes
-    #[arg(long, value_name = "FILE", default_value = "reports/out/index.html")]
-    output: PathBuf,
+    /// Where the report goes [default: reports/out/index.html]
+    #[arg(long, value_name = "FILE")]
+    output: Option<PathBuf>,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
-    let _ = args;
-    anyhow::bail!("report: being wired")
+    let merged = json::read(&args.files)?;
+    let default = || {
+        corpus::root()
+            .with_file_name("reports")
+            .join("out/index.html")
+    };
+    let page = args.output.clone().unwrap_or_else(default);
+    let run = run_info(&[], None, merged.summary.seconds);
+    report::write(&page, &ReportInput::from_rows(run, &merged))
+        .with_context(|| format!("cannot write {}", page.display()))?;
+    println!("Report: {}", page.display());
+    Ok(if merged.summary.diverging == 0 {
+        Verdict::Agree
+    } else {
+        Verdict::Diverge
+    })
 }

@@ -8,7 +8,7 @@ use super::{Image, Legend, SIDE_MAX, png, srgb};
 use crate::cause::Cause;
 
 /// One cause in a map of causes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Mark {
     /// Why these pixels differ; `None` if nothing explains them.
     pub cause: Option<Cause>,

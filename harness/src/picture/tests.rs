@@ -16,10 +16,10 @@ fn decode(image: &Image) -> image::RgbImage {
 
 #[test]
 fn the_transfer_function_is_srgb() {
-    // Codes of IEC 61966-2-1 for black, the end of the linear part, 18 % grey,
-    // half and white.
-    let codes = [0.0, 0.003_130_8, 0.18, 0.5, 1.0, 7.0, -1.0].map(srgb);
-    assert_eq!(codes, [0, 10, 118, 188, 255, 255, 0]);
+    // Codes of IEC 61966-2-1 for black, the end of the linear part, 2 % and 18 %
+    // grey, half and white.
+    let codes = [0.0, 0.003_130_8, 0.02, 0.18, 0.5, 1.0, 7.0, -1.0].map(srgb);
+    assert_eq!(codes, [0, 10, 39, 118, 188, 255, 255, 0]);
 }
 
 #[test]

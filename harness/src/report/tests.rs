@@ -204,6 +204,24 @@ fn classes_and_headings_are_accessible() {
 }
 
 #[test]
+fn a_budget_is_shown_and_a_broken_one_stands_out() {
+    let page_of = |admitted| {
+        let mut input = input();
+        input.scenes[1].rows[0] = Row {
+            admitted,
+            admitted_budget: Some(0.01),
+            ..row("abuffer/good", "cover", "spec", "embree")
+        };
+        page(&input).into_string()
+    };
+    let within = page_of(10);
+    assert!(within.contains("10 (1.00 % of 1.00 % allowed)"), "within");
+    assert_eq!(count_of(&within, "over budget"), 0, "just within");
+    let over = page_of(11);
+    assert_eq!(count_of(&over, "over budget"), 2, "index and row");
+}
+
+#[test]
 fn a_report_of_rows_alone() {
     let rows = vec![
         row("abuffer/a", "build", "spec", "embree"),

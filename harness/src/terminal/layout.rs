@@ -130,3 +130,31 @@ pub fn right(text: &str, width: usize) -> String {
     let fill = width.saturating_sub(measure_text_width(text));
     format!("{}{text}", " ".repeat(fill))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_first_is_what_matters_least() {
+        let pair = |b: &str| ("spec".to_owned(), b.to_owned());
+        let pairs = [pair("embree"), pair("gpu@llvmpipe/compute")];
+        let mut widths: Vec<Option<Layout>> = (20..140).map(|w| Layout::fit(w, &pairs)).collect();
+        widths.dedup_by_key(|l| l.map(|l| (l.full, l.edge, l.time)));
+        let richness = widths.iter().flatten().map(|l| (l.time, l.edge, l.full));
+        let expected = [
+            (0, 0, false),
+            (0, EDGE, false),
+            (TIME, EDGE, false),
+            (TIME, EDGE, true),
+        ];
+        assert_eq!(richness.collect::<Vec<_>>(), expected);
+        assert_eq!(widths[0], None, "a sentence at last");
+        for (layout, window) in (20..140).map(|w| (Layout::fit(w, &pairs), w)) {
+            let Some(l) = layout else { continue };
+            assert!((NAME[0]..=NAME[1]).contains(&l.name), "{window}: {l:?}");
+            let all = MARK + l.name + pairs.len() * l.cell + l.edge + 2 * l.time;
+            assert!(all <= window, "{all} > {window}");
+        }
+    }
+}

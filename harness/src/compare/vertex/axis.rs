@@ -88,18 +88,23 @@ impl Judge {
         let mut figures = Figures::default();
         let grid = grid_position(position, self.bits);
         for (axis, (number, observed)) in grid.into_iter().zip(observed).enumerate() {
-            let error = self.error(axis, number.value, observed);
             // An integer that the axis does not have is wrong whatever the bound.
-            if error > number.bound * SLACK || error.is_infinite() {
+            let [low, high] = self.ranges[axis];
+            if !(low..=high).contains(&observed) {
                 return Err((axis, number));
             }
             if axis < 2 && observed != self.rounded(axis, number.value) {
                 figures.moved = 1;
             }
-            if number.bound.is_infinite() {
+            let admits = |k| self.error(axis, number.value, k) <= number.bound * SLACK;
+            if number.bound.is_infinite() || (admits(low) && admits(high)) {
                 figures.unbounded = 1;
                 continue;
             }
+            if !admits(observed) {
+                return Err((axis, number));
+            }
+            let error = self.error(axis, number.value, observed);
             figures.error_over_bound = figures.error_over_bound.max(error / number.bound);
             if axis == 2 {
                 figures.error_keys = figures.error_keys.max(error);
@@ -111,13 +116,10 @@ impl Judge {
         Ok(figures)
     }
 
-    /// How far the nearest number that rounds to `observed` is from `value`; infinite
-    /// if there is none.
+    /// How far the nearest number that rounds to `observed`, one of the axis's
+    /// integers, is from `value`; infinite if `value` is not finite.
     fn error(&self, axis: usize, value: f64, observed: i32) -> f64 {
         let [low, high] = self.ranges[axis];
-        if !(low..=high).contains(&observed) {
-            return f64::INFINITY;
-        }
         let k = f64::from(observed);
         let (least, most) = match axis {
             2 => (k * (f64::from(DEPTH_ONE) / 2_f64.powi(31)), k + 1.0),

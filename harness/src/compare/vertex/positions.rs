@@ -1,6 +1,6 @@
 //! Stage `transform` by itself: every component inside its bound.
 
-use triptych_spec::bound::Bounded;
+use triptych_spec::bound::{Bounded, TINY};
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::{self, Position};
 
@@ -69,6 +69,21 @@ pub fn compare_transform(scene: &Scene, observed: &[[f32; 4]]) -> TransformRepor
         }
     }
     report
+}
+
+/// A device's positions as the given numbers of the stages that follow, for
+/// [`super::compare_from`]. Subnormal numbers may be flushed when they are read; on
+/// what is not finite nothing is promised.
+pub fn exact_positions(observed: &[[f32; 4]]) -> Vec<Position<Bounded>> {
+    let number = |v: f32| Bounded {
+        value: if v.is_finite() { f64::from(v) } else { 0.0 },
+        bound: match v {
+            _ if !v.is_finite() => f64::INFINITY,
+            _ if v.is_subnormal() => TINY,
+            _ => 0.0,
+        },
+    };
+    observed.iter().map(|p| p.map(number)).collect()
 }
 
 /// Where nothing is promised, NaN and infinity conform as well.

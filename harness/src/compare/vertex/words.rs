@@ -24,6 +24,12 @@ impl fmt::Display for Difference {
                     "corner {corner}: {axis} is {observed}, not {value} within {bound:.3e}"
                 )
             }
+            Kind::Crack { corner, neighbour } => {
+                write!(
+                    f,
+                    "corner {corner} is not where its neighbour {neighbour} has it"
+                )
+            }
             Kind::NoOutcome { outcomes, observed } => write!(
                 f,
                 "its {observed} corners match none of {outcomes} ways to clip it"
