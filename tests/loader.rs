@@ -40,7 +40,8 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("triptych-{name}-{}", std::process::id()));
+        let parent = format!("triptych-{}", std::process::id());
+        let path = std::env::temp_dir().join(parent).join(name);
         std::fs::create_dir_all(&path).expect("the temporary folder is writable");
         Self(path)
     }

@@ -96,6 +96,25 @@ fn libraries_give_materials_or_one_line() {
 }
 
 #[test]
+fn libraries_outside_the_mesh_folder_are_not_read() {
+    let folder = Folder::new("outside");
+    let library = folder.write("outside.mtl", b"newmtl a\nKd nonsense\n");
+    let inner = Folder::new("outside/inner");
+    let absolute = library.display().to_string();
+    for name in ["../outside.mtl", "..\\outside.mtl", absolute.as_str()] {
+        let obj = format!("mtllib {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        let path = inner.write("a.obj", obj.as_bytes());
+        let stats = attempt(&path).expect("the library is not looked at").stats;
+        let warnings = &stats.meshes[0].notes.warnings;
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(
+            warnings[0].ends_with("lies outside the mesh's folder"),
+            "{warnings:?}"
+        );
+    }
+}
+
+#[test]
 fn a_polygon_of_a_million_corners_loads() {
     let folder = Folder::new("polygon");
     let mut text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf".to_vec();

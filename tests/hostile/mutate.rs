@@ -9,7 +9,7 @@ use triptych_harness::mesh;
 use super::{Loads, assert_sound, obj, ply};
 
 /// Changes of each file.
-const CHANGES: usize = 200;
+const CHANGES: usize = 2000;
 
 /// Bytes that mean something to a loader.
 const BYTES: &[u8] = b"0123456789-+.eEnainf/\\# \t\r\nvflp\0\xff\x80{}";
