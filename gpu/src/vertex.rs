@@ -267,3 +267,6 @@ impl<'g> Stages<'g> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,9 @@ use triptych_spec::scene::Scene;
 use triptych_spec::vertex::{self, Position};
 
 use super::TOLD_MAX;
+use crate::cause::Cause;
+use crate::compare::Judgement;
+use crate::row::Class;
 
 /// What comparing positions gave. Every difference has cause
 /// [`crate::cause::Cause::Vertex`].
@@ -20,6 +23,26 @@ pub struct TransformReport {
     pub unbounded: u64,
     /// Largest error over its bound.
     pub error_over_bound: f64,
+}
+
+impl TransformReport {
+    /// The report as a judgement over vertices. The budget for what is admitted is
+    /// the caller's.
+    pub fn judgement(&self) -> Judgement {
+        let mut judgement = Judgement::new(Class::Interval, "vertices");
+        judgement.compared = self.vertices;
+        judgement.admitted = self.unbounded;
+        judgement.error_over_bound = Some(self.error_over_bound);
+        for stray in &self.told {
+            judgement.differs(Cause::Vertex, None, || stray.to_string());
+        }
+        let further = self.outside - self.told.len() as u64;
+        if further > 0 {
+            *judgement.causes.entry(Cause::Vertex).or_default() += further;
+        }
+        judgement.note = format!("off by up to {:.2} of the bound", self.error_over_bound);
+        judgement
+    }
 }
 
 /// A component outside its bound.

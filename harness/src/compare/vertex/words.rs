@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Difference, Kind, VertexReport};
+use super::{Difference, Kind, Stray, VertexReport};
 
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -57,10 +57,23 @@ impl fmt::Display for VertexReport {
             (self.decisions, "triangles with an uncertain branch"),
             (self.undecided, "triangles undecided"),
             (figures.unbounded, "corners unbounded"),
+            (self.cracks, "triangles that do not meet a neighbour"),
         ];
         for (count, what) in counts.iter().filter(|(count, _)| *count > 0) {
             write!(f, ", {count} {what}")?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for Stray {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let component = ["x", "y", "z", "w"][self.component];
+        let (value, bound) = (self.expected.value, self.expected.bound);
+        write!(
+            f,
+            "vertex {}: {component} is {}, not {value} within {bound:.3e}",
+            self.vertex, self.observed
+        )
     }
 }

@@ -1,0 +1,124 @@
+use triptych_spec::matrix::Matrix;
+use triptych_spec::scene::{Size, Vertex as SceneVertex};
+
+use super::*;
+use crate::context::adapters;
+use crate::wgsl::Sources;
+
+/// Every Vulkan adapter with kernels.
+fn devices(sources: &Sources) -> Vec<(Gpu, Kernels)> {
+    let all = adapters(wgpu::Backends::VULKAN);
+    assert!(!all.is_empty(), "no adapter: `./x setup` installs two");
+    all.iter()
+        .map(|a| {
+            (
+                Gpu::open(a).expect("a device"),
+                Kernels::new(sources.clone()),
+            )
+        })
+        .collect()
+}
+
+/// Triangles in clip space on a spiral; every third one is cut, every third is out of
+/// view. A vertex more than the triangles use comes last.
+fn spiral(triangles: u32, spare: u32) -> Scene {
+    let vertex = |i: u32| {
+        let t = i as f32 / 8.0;
+        let depth = [0.5, 1.0, 3.0][(i / 3 % 3) as usize] + (i % 3) as f32 / 8.0;
+        SceneVertex {
+            position: [t.cos() / 2.0, t.sin() / 2.0, depth - 0.125],
+            instance: 0,
+        }
+    };
+    let triangle = |t: u32| Triangle {
+        vertices: [3 * t, 3 * t + 1, 3 * t + 2],
+        instance: 0,
+        primitive: t,
+        colour: [1.0; 4],
+    };
+    Scene {
+        size: Size {
+            width: 64,
+            height: 48,
+        },
+        instances: vec![Matrix::IDENTITY],
+        vertices: (0..3 * triangles + spare).map(vertex).collect(),
+        triangles: (0..triangles).map(triangle).collect(),
+        background: [0.0; 3],
+    }
+}
+
+#[test]
+fn batches_do_not_show() {
+    let scene = spiral(300, 0);
+    for (gpu, kernels) in devices(&Sources::shipped(false)) {
+        let whole = run(&gpu, &kernels, &scene, 8).expect("small");
+        let corners = whole.primitives.snapped.len();
+        assert!(corners > 400 && corners != 600, "some are cut: {corners}");
+        assert_eq!(
+            whole.primitives.source.first(),
+            Some(&0),
+            "the first is in view"
+        );
+        assert_eq!(
+            whole.primitives.source.iter().max(),
+            Some(&298),
+            "the third is not"
+        );
+        for batch in [1, 7, 299, 300] {
+            let parts = run_in_batches(&gpu, &kernels, &scene, 8, batch).expect("small");
+            assert_eq!(parts.primitives, whole.primitives, "batches of {batch}");
+        }
+    }
+}
+
+#[test]
+fn vertices_beyond_one_dispatch_are_transformed() {
+    let spare = VERTICES + 1;
+    let scene = spiral(1, spare);
+    let last = scene.vertices[scene.vertices.len() - 1].position;
+    // 64 x 48 pixels, y down; the coordinates are short enough to be exact.
+    let expected = [32.0 * last[0] + 32.0, 24.0 - 24.0 * last[1], last[2], 1.0];
+    for (gpu, kernels) in devices(&Sources::shipped(false)) {
+        let run = run(&gpu, &kernels, &scene, 8).expect("67 MB of vertices");
+        let reached = run.positions.iter().filter(|p| p[3] == 1.0).count();
+        assert_eq!(reached, scene.vertices.len(), "{}", gpu.name);
+        let position = run.positions.last().expect("one for each vertex");
+        assert!(
+            position
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-4),
+            "{position:?}, not {expected:?}"
+        );
+    }
+}
+
+#[test]
+fn what_does_not_fit_its_slots_is_refused_by_name() {
+    let shipped = Sources::shipped(false);
+    let greedy = shipped.patched("vertex", "    if !outside {\n        return;\n    }\n", "");
+    let greedy = greedy.and_then(|s| {
+        s.patched(
+            "vertex",
+            "        if da >= 0.0 {\n",
+            "        push(&kept, a);\n        if da >= 0.0 {\n",
+        )
+    });
+    for (gpu, kernels) in devices(&greedy.expect("the kernel has these texts")) {
+        let error = run(&gpu, &kernels, &spiral(9, 0), 8).expect_err("corners double");
+        let GpuError::Limit { what, limit, .. } = error else {
+            panic!("{error}");
+        };
+        assert_eq!((what, limit), ("corners of a clipped triangle", 9));
+    }
+}
+
+#[test]
+fn a_scene_without_triangles_or_vertices_gives_nothing() {
+    for (gpu, kernels) in devices(&Sources::shipped(false)) {
+        let run = run(&gpu, &kernels, &spiral(0, 0), 8).expect("empty");
+        assert_eq!((run.positions.len(), run.primitives.snapped.len()), (0, 0));
+        assert_eq!(run.primitives.prims, [[0; 3]; 0]);
+    }
+}
