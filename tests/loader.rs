@@ -57,6 +57,7 @@ impl Drop for Folder {
     fn drop(&mut self) {
         // A folder that stays behind hurts nobody.
         let _ = std::fs::remove_dir_all(&self.0);
+        let _ = self.0.parent().map(std::fs::remove_dir);
     }
 }
 
