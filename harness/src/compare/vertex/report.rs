@@ -1,6 +1,5 @@
 //! What a comparison found.
 
-use super::OUTCOMES_MAX;
 use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::row::Class;
@@ -31,7 +30,7 @@ pub struct VertexReport {
     pub malformed: Option<String>,
     /// Triangles with a branch that may go either way; one outcome matched.
     pub decisions: u64,
-    /// Triangles with more than [`OUTCOMES_MAX`] outcomes: not judged.
+    /// Triangles with more than [`super::OUTCOMES_MAX`] outcomes: not judged.
     pub undecided: u64,
     /// Triangles that were not judged in full: undecided ones, and agreeing ones with
     /// a decision or an unbounded corner.
