@@ -14,6 +14,7 @@ pub mod error;
 pub mod generate;
 pub mod json;
 pub mod mesh;
+pub mod native;
 pub mod observe;
 pub mod picture;
 pub mod plan;

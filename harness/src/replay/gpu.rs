@@ -138,11 +138,21 @@ impl GpuLeg<'_> {
 
     /// Runs every stage and adds a row for each.
     ///
+    /// On a driver whose sub-pixel grid is unknown, only its coverage is compared,
+    /// by a band: what follows from other coverage has no exact answer.
+    ///
     /// # Errors
     /// Whatever the device reports.
     pub fn run(&self, rows: &mut Rows) -> Result<Observed<observe::Gpu, GpuSeen>, GpuError> {
         let rasterizer = self.rasterizer()?;
         self.cover(&rasterizer, rows)?;
+        if self.by_band() {
+            for stage in ["opaque", "build", "sort", "resolve"] {
+                let reason = "the driver's sub-pixel grid is unknown".to_owned();
+                rows.skip(stage, &self.spec.label, &self.label(), Class::Exact, reason);
+            }
+            return Ok(Observed::new(self.label(), self.abuffer(&rasterizer)?));
+        }
         let seen = Observed::new(self.label(), self.abuffer(&rasterizer)?);
         self.judge_opaque(&seen, rows);
         self.judge_lists(&seen, rows);
@@ -203,7 +213,8 @@ impl GpuLeg<'_> {
     }
 
     fn cover(&self, rasterizer: &Rasterizer<'_>, rows: &mut Rows) -> Result<(), GpuError> {
-        if let Some(reason) = self.plan.skipped("cover") {
+        let needed = self.by_band() && self.from <= From::Cover;
+        if let Some(reason) = self.plan.skipped("cover").filter(|_| !needed) {
             rows.skip(
                 "cover",
                 &self.spec.label,
@@ -228,10 +239,15 @@ impl GpuLeg<'_> {
         Ok(())
     }
 
+    fn by_band(&self) -> bool {
+        self.path == Path::Fragment && self.adapter.grid == Grid::Unknown
+    }
+
     fn rule(&self) -> Rule<'_> {
-        match (self.path, self.adapter.grid) {
-            (Path::Fragment, Grid::Unknown) => Rule::Band(&self.spec.value.primitives),
-            _ => Rule::Exact,
+        if self.by_band() {
+            Rule::Band(&self.spec.value.primitives)
+        } else {
+            Rule::Exact
         }
     }
 

@@ -100,6 +100,13 @@ impl SpecRun {
         })
     }
 
+    /// Every fragment, whatever the plan says.
+    pub fn fragments(&self) -> Vec<Fragment> {
+        let mut fragments = Vec::new();
+        raster::cover(&self.primitives, |f| fragments.push(f));
+        fragments
+    }
+
     /// Whether a row of `prims` is opaque.
     pub fn is_opaque(&self, prim: u32) -> bool {
         self.faces[prim as usize][3] >= 1.0
