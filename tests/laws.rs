@@ -1,0 +1,49 @@
+//! Laws: what must hold of every scene, tried on random ones.
+//!
+//! | module | laws |
+//! |---|---|
+//! | `bound` | whatever rounding, fusing, flushing and order WGSL allows stays inside the bounds |
+//! | `vertex` | neighbours share clip points; powers of two; permutation; ranges; what is visible stays |
+//! | `raster` | brute force; permutation; translation; refinement; winding |
+//! | `raster::partition` | splits, fans and grids cover each sample exactly once; closed meshes alternate |
+//! | `abuffer` | lists, capacity, conservation, order of insertion |
+//! | `abuffer::resolve` | closed forms and bounds of blending |
+//! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
+//!
+//! The seed is fixed, so that every run tries the same cases. To try others:
+//! `PROPTEST_RNG_SEED=7 PROPTEST_CASES=100000 cargo test --test laws`. A failure is
+//! shrunk and kept beside the law's file, as `*.regressions`, to be committed.
+
+#[path = "laws/abuffer.rs"]
+mod abuffer;
+#[path = "laws/bound.rs"]
+mod bound;
+#[path = "laws/grid.rs"]
+mod grid;
+#[path = "laws/loose.rs"]
+mod loose;
+#[path = "laws/raster.rs"]
+mod raster;
+#[path = "laws/vertex.rs"]
+mod vertex;
+#[path = "laws/world.rs"]
+mod world;
+
+use proptest::test_runner::{Config, FileFailurePersistence, RngSeed};
+
+/// How laws are tried: `cases` times unless `PROPTEST_CASES` says otherwise.
+fn config(cases: u32) -> Config {
+    let given = Config::default();
+    Config {
+        cases: match std::env::var_os("PROPTEST_CASES") {
+            Some(_) => given.cases,
+            None => cases,
+        },
+        rng_seed: match given.rng_seed {
+            RngSeed::Random => RngSeed::Fixed(2010),
+            fixed => fixed,
+        },
+        failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
+        ..given
+    }
+}

@@ -1,0 +1,204 @@
+//! Laws of the vertex stages.
+
+use proptest::prelude::*;
+use triptych_spec::bound::Bounded;
+use triptych_spec::camera::Projection;
+use triptych_spec::matrix::Matrix;
+use triptych_spec::scene::Size;
+use triptych_spec::vertex::{
+    CORNERS_MAX, DEPTH_ONE, GUARD, Plane, Polygons, Position, clip, clip_triangle, guard_origin,
+    primitives, snap, transform,
+};
+
+use super::config;
+use super::loose::Loose;
+use super::world::{World, scene, world};
+
+/// A position's bits: equal bits are equal points.
+fn bits(p: &Position<f64>) -> [u64; 4] {
+    p.map(f64::to_bits)
+}
+
+fn cut(size: Size, corners: [Position<f64>; 3]) -> Vec<Position<f64>> {
+    clip_triangle(&Plane::all(size), corners, |_, plain| plain)
+}
+
+/// The ends of what is visible of an edge, from the triangle `a, b, b`; as it has no
+/// other edge, clipping it is clipping the edge.
+fn visible_ends(size: Size, a: Position<f64>, b: Position<f64>) -> Vec<[u64; 4]> {
+    let mut ends: Vec<_> = cut(size, [a, b, b]).iter().map(bits).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    ends
+}
+
+/// Corners on the grid, as if they were a scene's only polygon.
+fn snapped(size: Size, corners: Vec<Position<f64>>, bits: u32) -> Vec<[i32; 3]> {
+    let empty = scene(size, Matrix::IDENTITY, &[], &[]);
+    let end = u32::try_from(corners.len()).expect("few corners");
+    snap(
+        &empty,
+        &Polygons {
+            offsets: vec![0, end],
+            corners,
+        },
+        bits,
+    )
+    .snapped
+}
+
+/// Homogeneous positions around the guard's corners, in front and behind.
+fn position() -> impl Strategy<Value = Position<f64>> {
+    let across =
+        || prop_oneof![3 => -9000.0..9000.0, 1 => (-5_i32..5).prop_map(|n| f64::from(n) * 1024.0)];
+    let w = prop_oneof![3 => 0.01..10.0, 1 => -10.0..10.0, 1 => Just(1.0)];
+    let z = prop_oneof![3 => -1.0..2.0, 1 => Just(0.0), 1 => Just(1.0)];
+    (across(), across(), z, w).prop_map(|(x, y, z, w)| [x * w, y * w, z * w, w])
+}
+
+fn target() -> impl Strategy<Value = Size> {
+    (1_u32..2049, 1_u32..2049).prop_map(|(width, height)| Size { width, height })
+}
+
+/// The snapped corners of each source triangle's pieces.
+fn pieces(world: &World) -> Vec<Vec<[[i32; 3]; 3]>> {
+    let p = primitives(&world.scene(), 8);
+    let mut pieces = vec![Vec::new(); world.triangles.len()];
+    for (row, source) in p.prims.iter().zip(&p.source) {
+        pieces[*source as usize].push(row.map(|v| p.snapped[v as usize]));
+    }
+    pieces
+}
+
+proptest! {
+    #![proptest_config(config(4000))]
+
+    /// Two triangles on the two sides of an edge get the same points on it, to the
+    /// bit, however they are wound; hence the same corners on the grid.
+    #[test]
+    fn neighbours_share_clip_points(
+        size in target(),
+        [a, b, c, d] in [position(), position(), position(), position()],
+        sub in 1_u32..=8,
+    ) {
+        let ends = visible_ends(size, a, b);
+        prop_assert_eq!(&ends, &visible_ends(size, b, a));
+        for corners in [[a, b, c], [b, a, c], [c, b, a], [b, a, d], [a, b, d], [d, a, b]] {
+            let polygon = cut(size, corners);
+            // Only what touches w = 0 vanishes with a visible edge.
+            prop_assert!(polygon.len() >= 3 || ends.is_empty());
+            let points: Vec<_> = polygon.iter().map(bits).collect();
+            prop_assert!(ends.iter().all(|end| points.contains(end)), "{ends:?} of {points:?}");
+            let on_grid = snapped(size, polygon, sub);
+            let ends = snapped(size, cut(size, [a, b, b]), sub);
+            prop_assert!(ends.iter().all(|end| on_grid.contains(end)));
+        }
+    }
+
+    /// What is visible as a whole stays as it is, to the bit.
+    #[test]
+    fn visible_triangles_stay(size in target(), corners in [position(), position(), position()]) {
+        let inside = |p: &Position<f64>| Plane::all(size).iter().all(|plane| plane.distance(*p) >= 0.0);
+        let all = corners.iter().all(|p| inside(p) && p[3] > 0.0);
+        let kept: Vec<_> = cut(size, corners).iter().map(bits).collect();
+        if all {
+            prop_assert_eq!(kept, corners.iter().map(bits).collect::<Vec<_>>());
+        } else {
+            prop_assert!(kept.len() <= CORNERS_MAX);
+            prop_assert_ne!(kept, corners.iter().map(bits).collect::<Vec<_>>());
+        }
+    }
+
+    /// World and camera scaled by a power of two: the same corners on the grid.
+    #[test]
+    fn powers_of_two(world in world(1..5), exponent in -20_i32..20) {
+        let factor = f64::from(exponent).exp2();
+        let mut scaled = world.clone();
+        scaled.camera.eye = world.camera.eye.map(|x| x * factor);
+        scaled.camera.target = world.camera.target.map(|x| x * factor);
+        scaled.camera.near *= factor;
+        scaled.camera.far *= factor;
+        if let Projection::Orthographic { height } = &mut scaled.camera.projection {
+            *height *= factor;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a power of two is exact")]
+        let short = factor as f32;
+        scaled.vertices.iter_mut().flatten().for_each(|x| *x *= short);
+        prop_assert_eq!(primitives(&scaled.scene(), 8), primitives(&world.scene(), 8));
+    }
+
+    /// Reordered triangles are clipped and snapped as before.
+    #[test]
+    fn permutation(
+        (world, order) in world(0..6).prop_flat_map(|world| {
+            let order: Vec<usize> = (0..world.triangles.len()).collect();
+            (Just(world), Just(order).prop_shuffle())
+        })
+    ) {
+        let mut shuffled = world.clone();
+        shuffled.triangles = order.iter().map(|t| world.triangles[*t]).collect();
+        let (plain, shuffled) = (pieces(&world), pieces(&shuffled));
+        for (now, before) in order.iter().enumerate() {
+            prop_assert_eq!(&shuffled[now], &plain[*before]);
+        }
+    }
+
+    /// Every corner lies in the guard rectangle and on the depth scale, every row names
+    /// corners that exist, and rows come in order of their source.
+    #[test]
+    fn corners_are_in_range(
+        mut world in world(0..6),
+        wild in prop::option::of([prop::num::f32::NORMAL, prop::num::f32::NORMAL, prop::num::f32::NORMAL]),
+        sub in 1_u32..=8,
+    ) {
+        world.vertices[0] = wild.unwrap_or(world.vertices[0]);
+        let p = primitives(&world.scene(), sub);
+        let sides = [world.size.width, world.size.height].map(|side| {
+            let low = guard_origin(side) << sub;
+            low..=low + (GUARD << sub)
+        });
+        for [x, y, z] in &p.snapped {
+            prop_assert!(sides[0].contains(x) && sides[1].contains(y), "{x}, {y}");
+            prop_assert!((0..=DEPTH_ONE).contains(z), "{z}");
+        }
+        prop_assert!(p.prims.iter().flatten().all(|v| (*v as usize) < p.snapped.len()));
+        prop_assert!(p.source.is_sorted());
+        prop_assert_eq!(p.source.len(), p.prims.len());
+    }
+
+    /// With bounds or without, the stages compute the same numbers.
+    #[test]
+    fn bounded_values_are_plain(world in world(0..6)) {
+        let scene = world.scene();
+        let (plain, bounded) = (transform::<f64>(&scene), transform::<Bounded>(&scene));
+        let value = |p: &Position<Bounded>| bits(&p.map(|c| c.value));
+        prop_assert_eq!(
+            plain.iter().map(bits).collect::<Vec<_>>(),
+            bounded.iter().map(value).collect::<Vec<_>>()
+        );
+        let (plain, bounded) = (clip(&scene, &plain), clip(&scene, &bounded));
+        prop_assert_eq!(plain.offsets, bounded.offsets);
+        prop_assert_eq!(
+            plain.corners.iter().map(bits).collect::<Vec<_>>(),
+            bounded.corners.iter().map(value).collect::<Vec<_>>()
+        );
+    }
+
+    /// Positions computed in `f32`, as loosely as WGSL allows, are inside the bounds.
+    #[test]
+    fn transform_in_f32(world in world(0..2), seed in any::<u64>()) {
+        let scene = world.scene();
+        let matrix = triptych_spec::vertex::viewport(scene.size).times(&scene.instances[0]);
+        let mut machine = Loose::new(seed);
+        for (vertex, bounded) in scene.vertices.iter().zip(transform::<Bounded>(&scene)) {
+            let [x, y, z] = vertex.position;
+            for (row, bounded) in matrix.rows.iter().zip(bounded) {
+                let row = row.map(|c| machine.round(c));
+                let terms = [(row[0], x), (row[1], y), (row[2], z), (row[3], 1.0)];
+                let products = terms.map(|(c, t)| machine.mul(c, t));
+                let seen = machine.sum(&products);
+                prop_assert!(bounded.admits(f64::from(seen)), "{seen:e} against {bounded:?}");
+            }
+        }
+    }
+}
