@@ -49,7 +49,14 @@ fn rows_that_are_no_fans_are_reported() {
     let (_, scene) = random().swap_remove(1);
     let good = vertex::primitives(&scene, BITS);
     type Damage = fn(&mut Primitives);
-    let damages: [Damage; 11] = [
+    let damages: [Damage; 12] = [
+        |p| {
+            // A sound polygon of a triangle that the scene does not have.
+            let end = u32::try_from(p.snapped.len()).expect("few");
+            p.snapped.extend([[0; 3]; 3]);
+            p.prims.push([end, end + 1, end + 2]);
+            p.source.push(2000);
+        },
         |p| p.bits = 4,
         |p| p.size.width += 1,
         |p| p.source[3] = u32::MAX,
