@@ -38,6 +38,18 @@ impl Pair<'_> {
     }
 }
 
+/// The order of columns: GPU legs, Embree, then what a GPU leg is compared with
+/// beside the spec, then the rest.
+pub fn column_order<'a>(a: &'a str, b: &'a str) -> impl Ord + use<'a> {
+    let rank = match (leg_parts(a).0, leg_parts(b).0) {
+        ("spec", "gpu") => 0,
+        ("spec", "embree") => 1,
+        ("gpu", _) => 2,
+        _ => 3,
+    };
+    (rank, b, a)
+}
+
 /// The verdict of several rows together; no rows at all diverge, because nothing
 /// compared is never a pass.
 pub fn verdict<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Verdict {
@@ -121,6 +133,10 @@ pub fn edge_share<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Option<(f64, b
         .reduce(|a, b| (a.0.max(b.0), a.1 || b.1))
 }
 
+/// Rows whose times hold what other rows count too: all stages in one, and the
+/// lists of `build` before their buffers grew.
+const AGAIN: [&str; 3] = ["end to end", "overflow", "plan"];
+
 /// Milliseconds of every stage of every leg, each counted once however many
 /// pairs it takes part in. Stages and legs are in order of first appearance.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -163,9 +179,11 @@ impl<'a> Times<'a> {
         cells[column].get_or_insert(ms);
     }
 
-    /// All stages of a leg.
-    pub fn total(&self, leg: usize) -> f64 {
-        self.stages.iter().filter_map(|(_, cells)| cells[leg]).sum()
+    /// All stages of a leg together; `None` if none was timed.
+    pub fn total(&self, leg: usize) -> Option<f64> {
+        let single = self.stages.iter().filter(|(s, _)| !AGAIN.contains(s));
+        let times = single.filter_map(|(_, cells)| cells[leg]);
+        times.reduce(|sum, ms| sum + ms)
     }
 }
 
@@ -193,11 +211,15 @@ pub fn leg_parts(label: &str) -> (&str, Option<&str>, Option<&str>) {
 pub fn rerun(row: &Row, options: &str) -> String {
     let (a, b) = (leg_parts(&row.a), leg_parts(&row.b));
     let mut words = Vec::new();
-    // The spec always runs; one path can be asked for, or all.
-    let one_path = a.2.is_none() || b.2.is_none() || a.2 == b.2;
-    for (leg, adapter, path) in [a, b] {
+    // A path may carry options of its own, such as `compute --no-skip`.
+    let path = |label: Option<_>| label.and_then(|p: &str| p.split(' ').next());
+    let (path_a, path_b) = (path(a.2), path(b.2));
+    // One path can be asked for, or all.
+    let one_path = path_a.is_none() || path_b.is_none() || path_a == path_b;
+    for ((leg, adapter, _), path) in [(a, path_a), (b, path_b)] {
         let path = path.filter(|_| one_path);
-        let leg = (leg != "spec").then_some(leg);
+        // The spec and closed forms always take part.
+        let leg = ["gpu", "embree"].contains(&leg).then_some(leg);
         for (option, value) in [("--leg", leg), ("--adapter", adapter), ("--path", path)] {
             let word = value.map(|v| format!("{option} {}", shell_word(v)));
             words.extend(word.filter(|w| !words.contains(w)));

@@ -93,7 +93,49 @@ fn a_stage_of_a_leg_is_timed_once() {
     assert_eq!(times.legs, ["spec", "embree", "gpu@x/compute"]);
     assert_eq!(times.stages[0], ("cover", vec![Some(8.0), Some(3.0), None]));
     assert_eq!(times.stages[1], ("build", vec![Some(2.0), None, Some(1.0)]));
-    assert_eq!([0, 1, 2].map(|leg| times.total(leg)), [10.0, 3.0, 1.0]);
+    let totals = [0, 1, 2].map(|leg| times.total(leg));
+    assert_eq!(totals, [Some(10.0), Some(3.0), Some(1.0)]);
+}
+
+#[test]
+fn rows_that_time_the_same_work_again_do_not_count_twice() {
+    let timed = |stage, b| Row {
+        ms_b: Some(5.0),
+        ..row("s", stage, "gpu@x/compute", b)
+    };
+    let rows = [
+        timed("build", "gpu@x/fragment"),
+        timed("overflow", "gpu@x/fragment"),
+        timed("end to end", "gpu@x/fragment"),
+        timed("plan", "gpu@x/compute --no-skip"),
+    ];
+    let times = Times::of(&rows);
+    assert_eq!(times.legs, ["gpu@x/fragment", "gpu@x/compute --no-skip"]);
+    assert_eq!([0, 1].map(|leg| times.total(leg)), [Some(5.0), None]);
+    assert_eq!(times.stages.len(), 4, "all are shown");
+}
+
+#[test]
+fn columns_have_an_order_of_their_own() {
+    let mut pairs = [
+        ("spec", "closed form"),
+        ("gpu@x/compute", "gpu@x/compute --no-skip"),
+        ("spec", "gpu@y/compute"),
+        ("spec", "embree"),
+        ("spec", "gpu@x/fragment"),
+        ("spec", "gpu@x/compute"),
+    ];
+    pairs.sort_by(|x, y| column_order(x.0, x.1).cmp(&column_order(y.0, y.1)));
+    let legs = pairs.map(|(_, b)| b);
+    let expected = [
+        "gpu@x/compute",
+        "gpu@x/fragment",
+        "gpu@y/compute",
+        "embree",
+        "gpu@x/compute --no-skip",
+        "closed form",
+    ];
+    assert_eq!(legs, expected);
 }
 
 #[test]
@@ -134,6 +176,11 @@ fn the_command_names_each_leg_once_and_quotes() {
     let paths = row("-x", "build", "gpu@x/compute", "gpu@x/fragment");
     let expected = "cargo triptych replay --exact --leg gpu --adapter x -- -x";
     assert_eq!(rerun(&paths, ""), expected, "both paths, hence neither");
+    let unskipped = row("a", "plan", "gpu@x/compute", "gpu@x/compute --no-skip");
+    let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute a";
+    assert_eq!(rerun(&unskipped, ""), expected);
+    let closed = row("a", "expect", "spec", "closed form");
+    assert_eq!(rerun(&closed, ""), "cargo triptych replay --exact a");
     let vote = row("a", "cover", "gpu@x/compute", "embree");
     let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute \
                     --leg embree a";

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{ReportInput, SceneReport, sign, text, verdict_name};
-use crate::digest::{self, Pair, leg_parts};
+use crate::digest::{self, Pair, column_order, leg_parts};
 use crate::row::Verdict;
 use crate::text::{clean, count, share};
 
@@ -15,6 +15,7 @@ pub fn section(input: &ReportInput) -> Markup {
             pairs.push((pair.a, pair.b));
         }
     }
+    pairs.sort_by(|x, y| column_order(x.0, x.1).cmp(&column_order(y.0, y.1)));
     html! {
         section aria-labelledby="scenes" {
             h2 #scenes { "Scenes" }

@@ -116,7 +116,9 @@ pub fn times(scene: &SceneReport) -> Markup {
                     } } }
                     tfoot { tr {
                         th scope="row" { "together" }
-                        @for leg in 0..times.legs.len() { td.n { (time(times.total(leg))) } }
+                        @for leg in 0..times.legs.len() { td.n {
+                            @if let Some(ms) = times.total(leg) { (time(ms)) }
+                        } }
                     } }
                 }
             }

@@ -10,6 +10,12 @@ pub const MARK: usize = 3;
 /// Narrowest and widest column of names.
 const NAME: [usize; 2] = [24, 40];
 
+/// The same where columns stand close.
+const NAME_TIGHT: usize = 20;
+
+/// Narrowest column with a compact count, one space before it.
+const CELL_TIGHT: usize = 8;
+
 /// Narrowest column with a count in full (`✓ 12,345,678`), and with a compact
 /// count (`✓ 12.3M`), with the gap before it.
 const CELL: [usize; 2] = [14, 10];
@@ -52,13 +58,20 @@ impl Layout {
         let choices = [
             (CELL[0].max(wide), true, EDGE, TIME),
             (CELL[1].max(wide), false, EDGE, TIME),
+            (CELL[1], false, EDGE, TIME),
             (CELL[1].max(wide), false, EDGE, 0),
             (CELL[1], false, EDGE, 0),
             (CELL[1], false, 0, 0),
+            (CELL_TIGHT, false, 0, 0),
         ];
         for (cell, full, edge, time) in choices {
             let columns = MARK + pairs.len() * cell + edge + 2 * time;
-            if columns + NAME[0] <= window {
+            let name = if cell == CELL_TIGHT {
+                NAME_TIGHT
+            } else {
+                NAME[0]
+            };
+            if columns + name <= window {
                 let name = (window - columns).min(NAME[1]);
                 return Some(Self {
                     name,
@@ -72,21 +85,22 @@ impl Layout {
         None
     }
 
+    /// What a heading may take of its column.
+    fn room(self) -> usize {
+        self.cell - if self.cell == CELL_TIGHT { 1 } else { GAP }
+    }
+
     /// The lines above the table: adapter or leg, and path.
     pub fn header(self, pairs: &[Columns]) -> Vec<String> {
-        let side = match pairs {
-            [(a, _), ..] if pairs.iter().all(|(other, _)| other == a) => {
-                format!("{a} against")
-            }
-            _ => String::new(),
-        };
+        let side = pairs.first().map(|(a, _)| format!("{a} against"));
+        let side = cut(&side.unwrap_or_default(), self.name);
         let mut lines = vec![
             format!("{}{}", " ".repeat(MARK), right(&side, self.name)),
             format!("{}{}", " ".repeat(MARK), pad("scene", self.name)),
         ];
         for (_, b) in pairs {
             for (line, text) in lines.iter_mut().zip(above(b)) {
-                line.push_str(&right(&cut(text, self.cell - GAP), self.cell));
+                line.push_str(&right(&cut(text, self.room()), self.cell));
             }
         }
         for (title, width) in [("edge", self.edge), ("spec", self.time), ("gpu", self.time)] {
@@ -97,14 +111,15 @@ impl Layout {
         lines
     }
 
-    /// Whether the header cannot tell these pairs apart, so that they must be
-    /// listed in full.
-    pub fn ambiguous(self, pairs: &[Columns]) -> bool {
-        let room = self.cell - GAP;
-        let long = |text: &str| measure_text_width(text) > room;
-        pairs
-            .iter()
-            .any(|(a, b)| *a != pairs[0].0 || above(b).into_iter().any(long))
+    /// Columns that the header does not tell from others, or whose first leg is
+    /// not the one that it names; they must be listed in full.
+    pub fn unclear(self, pairs: &[Columns]) -> Vec<usize> {
+        let heading = |(_, b): &Columns| above(b).map(|text| cut(text, self.room()));
+        let unclear = |pair: &Columns| {
+            let same = pairs.iter().filter(|p| heading(p) == heading(pair));
+            pair.0 != pairs[0].0 || same.count() > 1
+        };
+        (0..pairs.len()).filter(|&i| unclear(&pairs[i])).collect()
     }
 }
 
@@ -152,9 +167,11 @@ mod tests {
         assert_eq!(widths[0], None, "a sentence at last");
         for (layout, window) in (20..140).map(|w| (Layout::fit(w, &pairs), w)) {
             let Some(l) = layout else { continue };
-            assert!((NAME[0]..=NAME[1]).contains(&l.name), "{window}: {l:?}");
+            assert!((NAME_TIGHT..=NAME[1]).contains(&l.name), "{window}: {l:?}");
             let all = MARK + l.name + pairs.len() * l.cell + l.edge + 2 * l.time;
             assert!(all <= window, "{all} > {window}");
+            let roomy = l.cell == CELL_TIGHT || l.name >= NAME[0];
+            assert!(roomy, "{window}: {l:?}");
         }
     }
 }

@@ -7,7 +7,7 @@ use super::explain;
 use super::ink::Ink;
 use super::layout::{Layout, MARK, cut, pad, right};
 use super::totals::Totals;
-use crate::digest::{self, Pair, Times};
+use crate::digest::{self, Pair, Times, column_order};
 use crate::row::{Row, Summary, Verdict};
 use crate::text::{clean, compact, count, plural, share, time};
 
@@ -73,6 +73,8 @@ impl Table {
             return Vec::new();
         }
         self.pairs.extend(new);
+        self.pairs
+            .sort_by(|x, y| column_order(&x.0, &x.1).cmp(&column_order(&y.0, &y.1)));
         let mut lines = Vec::new();
         if first {
             let legend = "✓ agrees, items compared   ✗ items that differ   – skipped, see [n]   \
@@ -80,10 +82,9 @@ impl Table {
             lines.extend(wrapped(legend, self.width));
         }
         if let Some(layout) = Layout::fit(self.width, &self.pairs) {
-            if layout.ambiguous(&self.pairs) {
-                for (i, (a, b)) in (1..).zip(&self.pairs) {
-                    lines.push(format!("column {i}: {a} against {b}"));
-                }
+            for i in layout.unclear(&self.pairs) {
+                let (a, b) = &self.pairs[i];
+                lines.push(format!("column {}: {a} against {b}", i + 1));
             }
             lines.push(String::new());
             lines.extend(layout.header(&self.pairs));
@@ -214,7 +215,7 @@ fn times(rows: &[Row]) -> (Option<f64>, Option<f64>) {
     let times = Times::of(rows);
     let of = |is: &dyn Fn(&str) -> bool| {
         let legs = times.legs.iter().enumerate().filter(|(_, leg)| is(leg));
-        legs.map(|(i, _)| times.total(i)).reduce(f64::min)
+        legs.filter_map(|(i, _)| times.total(i)).reduce(f64::min)
     };
     (of(&|leg| leg == "spec"), of(&|leg| leg.starts_with("gpu")))
 }

@@ -127,7 +127,7 @@ fn no_line_of_the_table_is_wider_than_the_window() {
 
 #[test]
 fn a_narrow_window_gets_sentences_and_full_names() {
-    let text = printed(40, false, &sample());
+    let text = printed(36, false, &sample());
     assert!(
         text.contains("✓c abuffer/a, 2 of 2 pairs agree, 2.46M items, edge 0.100 %"),
         "{text}"
@@ -212,6 +212,21 @@ fn a_pair_that_turns_up_late_gets_a_new_header() {
     ];
     let text = printed(100, false, &scenes);
     assert_eq!(text.matches("scene  ").count(), 2, "{text}");
+}
+
+#[test]
+fn columns_that_look_alike_are_told_apart_below_the_legend() {
+    let against = |a, b| row("abuffer/a", "sort", a, b);
+    let rows = vec![
+        against("spec", "gpu@a-long-adapter-name-1/compute"),
+        against("spec", "gpu@a-long-adapter-name-2/compute"),
+        against("gpu@x/compute", "gpu@x/compute --no-skip"),
+        against("spec", "embree"),
+    ];
+    let text = printed(80, false, &[scene("abuffer/a", rows)]);
+    assert!(text.contains("column 1: spec against gpu@a-long-adapter-name-1/compute\n"));
+    assert!(text.contains("column 4: gpu@x/compute against gpu@x/compute --no-skip\n"));
+    assert!(!text.contains("column 3"), "embree is clear: {text}");
 }
 
 #[test]
