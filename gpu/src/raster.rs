@@ -16,8 +16,10 @@ use crate::kernel::{Kernel, Kernels, Pipeline, TARGET_FORMAT};
 pub enum Path {
     /// The hardware's rasteriser.
     Fragment,
-    /// Integer arithmetic in a compute kernel.
+    /// Integer arithmetic in a compute kernel, baseline WGSL.
     Compute,
+    /// The same with the adapter's own 64-bit integers.
+    Native,
 }
 
 impl Path {
@@ -26,6 +28,7 @@ impl Path {
         match self {
             Self::Fragment => "fragment",
             Self::Compute => "compute",
+            Self::Native => "native",
         }
     }
 }
@@ -154,7 +157,7 @@ impl<'g> Rasterizer<'g> {
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Duration, GpuError> {
         let kernel = match self.path {
-            Path::Compute => self.kernels.compute(self.gpu, file, stage)?,
+            Path::Compute | Path::Native => self.kernels.compute(self.gpu, file, stage)?,
             Path::Fragment => {
                 self.kernels
                     .fragment(self.gpu, file, &format!("{stage}_fragment"))?

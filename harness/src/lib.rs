@@ -18,6 +18,7 @@ pub mod native;
 pub mod observe;
 pub mod picture;
 pub mod plan;
+pub mod registry;
 pub mod replay;
 pub mod report;
 pub mod row;

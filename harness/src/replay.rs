@@ -61,7 +61,7 @@ impl Default for Options {
         Self {
             gpu: true,
             embree: true,
-            paths: vec![Path::Fragment, Path::Compute],
+            paths: vec![Path::Fragment, Path::Compute, Path::Native],
             from: From::default(),
             skip: true,
             seed: None,
@@ -371,6 +371,12 @@ impl<'a> Run<'a> {
     }
 
     fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
+        if path == Path::Native && adapter.native.is_none() {
+            let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+            let reason = "no 64-bit integers: compute takes its place".to_owned();
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+            return Ok(());
+        }
         let spec = self.spec(adapter.bits(path))?;
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
         match self.leg_or_error(&spec, adapter, path) {
@@ -463,7 +469,12 @@ impl<'a> Run<'a> {
             .adapters
             .last()
             .is_some_and(|a| std::ptr::eq(a, adapter));
-        let wanted = self.options.paths.iter().max();
+        let wanted = self
+            .options
+            .paths
+            .iter()
+            .filter(|p| **p != Path::Native)
+            .max();
         last && wanted == Some(&path) && self.options.from == From::Cover
     }
 

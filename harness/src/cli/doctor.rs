@@ -2,8 +2,6 @@
 
 use std::io::Write;
 
-use triptych_gpu::wgsl::Sources;
-
 use super::Verdict;
 use crate::calibrate::Grid;
 use crate::replay::gpu::Adapter;
@@ -46,7 +44,7 @@ pub fn run() -> anyhow::Result<Verdict> {
 
 fn adapters(out: &mut impl Write) -> anyhow::Result<bool> {
     writeln!(out, "Adapters")?;
-    let adapters = Adapter::open_all(&[], &Sources::shipped(false))?;
+    let adapters = Adapter::open_all(&[])?;
     if adapters.is_empty() {
         writeln!(out, "  none; `./x setup` installs two software drivers")?;
     }

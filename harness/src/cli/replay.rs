@@ -6,7 +6,6 @@ use std::time::Instant;
 use anyhow::Context;
 use clap::ValueEnum;
 use triptych_gpu::raster::Path;
-use triptych_gpu::wgsl::Sources;
 
 use super::Verdict;
 use super::run_info::{run_info, scene_report};
@@ -72,8 +71,12 @@ enum Leg {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PathName {
+    /// The hardware's rasteriser
     Fragment,
+    /// Integer arithmetic in baseline WGSL
     Compute,
+    /// The same with 64-bit integers, where an adapter has them
+    Native,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -172,7 +175,7 @@ impl Args {
         if !options.gpu {
             return Ok(Vec::new());
         }
-        let adapters = Adapter::open_all(&self.adapter, &Sources::shipped(false))?;
+        let adapters = Adapter::open_all(&self.adapter)?;
         if adapters.is_empty() && !self.adapter.is_empty() {
             let wanted = self.adapter.join(" or ");
             anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
@@ -186,9 +189,10 @@ impl Args {
             gpu: wanted(Leg::Gpu),
             embree: wanted(Leg::Embree),
             paths: match self.path {
-                None => vec![Path::Fragment, Path::Compute],
+                None => Options::default().paths,
                 Some(PathName::Fragment) => vec![Path::Fragment],
                 Some(PathName::Compute) => vec![Path::Compute],
+                Some(PathName::Native) => vec![Path::Native],
             },
             from: match self.gpu_from {
                 Stage::Transform => From::Transform,

@@ -29,6 +29,8 @@ pub struct Adapter {
     pub gpu: Gpu,
     /// Kernels in baseline WGSL.
     pub kernels: Kernels,
+    /// Kernels that use 64-bit integers, where the adapter has them.
+    pub native: Option<Kernels>,
     /// What calibration found.
     pub grid: Grid,
 }
@@ -40,7 +42,7 @@ impl Adapter {
     ///
     /// # Errors
     /// The first adapter that cannot be opened.
-    pub fn open_all(wanted: &[String], sources: &Sources) -> Result<Vec<Self>, GpuError> {
+    pub fn open_all(wanted: &[String]) -> Result<Vec<Self>, GpuError> {
         let asked = |name: &str| {
             wanted
                 .iter()
@@ -60,7 +62,7 @@ impl Adapter {
         found.dedup_by(|a, b| a.0 == b.0);
         found
             .iter()
-            .map(|(_, adapter)| Self::open(adapter, sources))
+            .map(|(_, adapter)| Self::open(adapter))
             .collect()
     }
 
@@ -68,13 +70,17 @@ impl Adapter {
     ///
     /// # Errors
     /// Whatever the device reports.
-    pub fn open(adapter: &wgpu::Adapter, sources: &Sources) -> Result<Self, GpuError> {
+    pub fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let gpu = Gpu::open(adapter)?;
-        // The shipped kernels: a user's kernel must not decide the grid.
-        let grid = calibrate(&gpu, &Kernels::new(Sources::shipped(false)))?;
+        let kernels = Kernels::new(Sources::shipped(false));
+        let native = gpu
+            .has_int64()
+            .then(|| Kernels::new(Sources::shipped(true)));
+        let grid = calibrate(&gpu, &kernels)?;
         Ok(Self {
             gpu,
-            kernels: Kernels::new(sources.clone()),
+            kernels,
+            native,
             grid,
         })
     }
@@ -82,7 +88,7 @@ impl Adapter {
     /// The grid on which a path works: compute kernels take any.
     pub fn bits(&self, path: Path) -> u32 {
         match path {
-            Path::Compute => triptych_spec::vertex::SUBPIXEL_BITS,
+            Path::Compute | Path::Native => triptych_spec::vertex::SUBPIXEL_BITS,
             Path::Fragment => self.grid.bits(),
         }
     }
@@ -207,7 +213,16 @@ impl GpuLeg<'_> {
     /// # Errors
     /// More triangles than the adapter can bind.
     pub fn rasterizer(&self) -> Result<Rasterizer<'_>, GpuError> {
-        let Adapter { gpu, kernels, .. } = self.adapter;
+        let Adapter {
+            gpu,
+            kernels,
+            native,
+            ..
+        } = self.adapter;
+        let kernels = native
+            .as_ref()
+            .filter(|_| self.path == Path::Native)
+            .unwrap_or(kernels);
         let spec = &self.spec.value;
         Rasterizer::new(gpu, kernels, self.path, &spec.primitives, &spec.faces)
     }

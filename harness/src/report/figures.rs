@@ -28,9 +28,17 @@ pub fn grid(scene: &SceneReport) -> Markup {
     }
 }
 
-/// GPU legs whose pictures are the same, byte for byte, together.
+/// The three legs side by side, then the maps; GPU legs whose pictures are the
+/// same, byte for byte, together.
 fn groups(pictures: &[Picture]) -> Vec<Vec<&Picture>> {
     let leg = |picture: &Picture| leg_parts(&picture.title).0 == "gpu";
+    let mut pictures: Vec<&Picture> = pictures.iter().collect();
+    pictures.sort_by_key(|p| match leg_parts(&p.title).0 {
+        "spec" => 0,
+        "gpu" => 1,
+        "embree" => 2,
+        _ => 3,
+    });
     let mut groups: Vec<Vec<&Picture>> = Vec::new();
     for picture in pictures {
         let same = |group: &&mut Vec<&Picture>| {

@@ -4,12 +4,14 @@ use maud::{Markup, html};
 
 use super::glossary::class_name;
 use super::{SceneReport, sign, text};
-use crate::digest::{self, Times};
+use crate::digest::{self, Times, column_order, leg_parts};
 use crate::row::{Row, Verdict};
 use crate::text::{clean, count, share, time};
 
 /// Every comparison of the scene.
 pub fn table(scene: &SceneReport) -> Markup {
+    let mut pairs = digest::pairs(&scene.rows);
+    pairs.sort_by(|x, y| column_order(x.a, x.b).cmp(&column_order(y.a, y.b)));
     html! {
         @if !scene.rows.is_empty() {
             h4 { "Comparisons" }
@@ -22,7 +24,7 @@ pub fn table(scene: &SceneReport) -> Markup {
                         th.n scope="col" { "not judged" } th.n scope="col" { "error / bound" }
                         th scope="col" { "remark" }
                     } }
-                    @for pair in digest::pairs(&scene.rows) { tbody {
+                    @for pair in &pairs { tbody {
                         tr.pair { th colspan="9" scope="rowgroup" {
                             (text(pair.a)) " : " (text(pair.b))
                         } }
@@ -103,7 +105,7 @@ pub fn times(scene: &SceneReport) -> Markup {
                 table.times {
                     thead { tr {
                         th scope="col" { "stage" }
-                        @for leg in &times.legs { th.n scope="col" { (text(leg)) } }
+                        @for leg in &times.legs { th.n scope="col" { (heading(leg)) } }
                     } }
                     tbody { @for (stage, cells) in &times.stages { tr {
                         th scope="row" { (text(stage)) }
@@ -123,6 +125,15 @@ pub fn times(scene: &SceneReport) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// A leg over its adapter and path, so that columns stay narrow.
+fn heading(label: &str) -> Markup {
+    let (leg, adapter, path) = leg_parts(label);
+    html! {
+        (text(leg))
+        @for part in [adapter, path].into_iter().flatten() { br; span.path { (text(part)) } }
     }
 }
 

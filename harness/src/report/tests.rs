@@ -33,12 +33,12 @@ fn input() -> ReportInput {
         purpose: "shows something".to_owned(),
         rows: vec![bad],
         pictures: vec![
+            shown("causes", picture::causes(size, None, marks)),
+            shown("embree", picture::counts(size, &[0, 9])),
             shown("spec", colours(0.25)),
             shown("gpu@x/compute", colours(0.25)),
             shown("gpu@y/compute", colours(0.25)),
             shown("gpu@z/compute", colours(0.75)),
-            shown("embree", picture::counts(size, &[0, 9])),
-            shown("causes", picture::causes(size, None, marks)),
         ],
         plan: vec![PlanLine {
             pass: "opaque".to_owned(),
@@ -108,6 +108,10 @@ fn equal_pictures_of_gpu_legs_are_shown_once_and_spec_always() {
     );
     assert!(page.contains("<strong>gpu@x/compute</strong>, <strong>gpu@y/compute</strong>"));
     assert_eq!(count_of(&page, "byte for byte"), 1);
+    let at = |title: &str| page.find(&format!("<strong>{title}</strong>"));
+    assert!(at("spec") < at("gpu@z/compute"), "legs in order");
+    assert!(at("gpu@z/compute") < at("embree"), "legs in order");
+    assert!(at("embree") < at("causes"), "legs before maps");
 }
 
 #[test]
