@@ -8,7 +8,7 @@ use triptych_spec::abuffer::{EOL, Lists, NOTHING, Node, Opaque};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
-use crate::raster::{Next, Rasterizer, after, first_capacity, per_pixel};
+use crate::raster::{Next, Rasterizer, after, first_capacity, nodes_max, per_pixel};
 
 /// Another leg's results in place of the stages before one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,8 @@ pub struct Given<'a> {
 pub struct Options<'a> {
     /// Start from these instead of from triangles.
     pub given: Option<Given<'a>>,
-    /// Nodes of the first attempt; `None` leaves it to the kernel's host.
+    /// Nodes of the first attempt, as far as the adapter can bind so many; `None`
+    /// leaves it to the host.
     pub capacity: Option<u32>,
     /// Draw opaque triangles.
     pub opaque: bool,
@@ -109,15 +110,18 @@ pub fn run(
         image: Vec::new(),
         times: Times::default(),
     };
-    let mut capacity = options.capacity.unwrap_or_else(|| first_capacity(size));
+    let mut capacity = match options.given {
+        Some(given) => given.lists.attempts,
+        None => options.capacity.unwrap_or_else(|| first_capacity(size)),
+    };
     let mut sound = true;
     let mut bands = vec![Band::whole(size)];
     while let Some(band) = bands.pop() {
-        // One invocation per pixel must fit one row of workgroups.
-        if let (true, Some([upper, lower])) = (band.pixels(size) > PIXELS_MAX, band.halves()) {
+        if let (false, Some([upper, lower])) = (fits(rasterizer, band), band.halves()) {
             bands.extend([lower, upper]);
             continue;
         }
+        capacity = capacity.min(nodes_max(rasterizer.gpu));
         let mut run = Run {
             rasterizer,
             options,
@@ -170,6 +174,17 @@ pub const STEPS: u64 = 16_384;
 
 /// Bytes of a pixel's progress. Twin: `Progress` in `abuffer.wgsl`.
 pub const PROGRESS: u64 = 32;
+
+/// Whether a band's pixels fit a dispatch, and their largest buffer a binding. What
+/// its nodes need shows when they are counted.
+fn fits(rasterizer: &Rasterizer<'_>, band: Band) -> bool {
+    let pixels = band.pixels(rasterizer.size);
+    let bytes = HEADER + PROGRESS * u64::from(pixels);
+    pixels <= PIXELS_MAX && bytes <= rasterizer.gpu.binding_limit()
+}
+
+/// Bytes before the pixels' progress. Twin: `Work` in `abuffer.wgsl`.
+const HEADER: u64 = 4;
 
 /// Pixels that a dispatch of one workgroup row can serve.
 const PIXELS_MAX: u32 = 65_535 * crate::frame::WORKGROUP;
@@ -290,7 +305,7 @@ impl Run<'_, '_> {
     fn until_done(&self, stage: &'static str, b: &Buffers) -> Result<Duration, GpuError> {
         let gpu = self.gpu();
         let pixels = u64::from(self.band.pixels(self.rasterizer.size));
-        let progress = gpu.storage("progress", 4 + PROGRESS * pixels)?;
+        let progress = gpu.storage("progress", HEADER + PROGRESS * pixels)?;
         let mut buffers = b.named().to_vec();
         buffers.push(("progress", &progress));
         let mut time = Duration::ZERO;

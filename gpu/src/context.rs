@@ -33,6 +33,8 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
+    /// The largest buffer that a kernel may see, in bytes.
+    binding_limit: u64,
     /// The first thing that went wrong behind our back.
     failure: Arc<Mutex<Option<GpuError>>>,
 }
@@ -67,11 +69,16 @@ impl Gpu {
             })?;
         let failure = Arc::new(Mutex::new(None));
         watch(&device, &name, &failure);
+        let limits = device.limits();
+        let binding_limit = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size);
         Ok(Self {
             name,
             info,
             device,
             queue,
+            binding_limit,
             failure,
         })
     }
@@ -83,12 +90,14 @@ impl Gpu {
             .contains(wgpu::Features::SHADER_INT64)
     }
 
-    /// The largest buffer that a kernel can see, in bytes.
+    /// The largest buffer that a kernel may see, in bytes.
     pub fn binding_limit(&self) -> u64 {
-        let limits = self.device.limits();
-        limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size)
+        self.binding_limit
+    }
+
+    /// Behaves like an adapter that can bind no more than so many bytes.
+    pub fn restrict_bindings(&mut self, bytes: u64) {
+        self.binding_limit = self.binding_limit.min(bytes);
     }
 
     /// A storage buffer of `bytes` zeros (at least one word).

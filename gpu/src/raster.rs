@@ -272,7 +272,7 @@ pub fn cover(rasterizer: &Rasterizer<'_>) -> Result<Covered, GpuError> {
         time: Duration::ZERO,
     };
     let size = rasterizer.size;
-    let mut capacity = first_capacity(size);
+    let mut capacity = first_capacity(size).min(nodes_max(rasterizer.gpu));
     let mut bands = vec![Band::whole(size)];
     while let Some(band) = bands.pop() {
         let gpu = rasterizer.gpu;
@@ -314,6 +314,11 @@ pub fn first_capacity(size: Size) -> u32 {
     2 * size.width * size.height
 }
 
+/// The most nodes of 16 bytes that the adapter can bind.
+pub fn nodes_max(gpu: &Gpu) -> u32 {
+    u32::try_from(gpu.binding_limit() / 16).unwrap_or(u32::MAX)
+}
+
 /// What to do after an attempt with some capacity.
 pub enum Next {
     /// Everything fitted.
@@ -337,18 +342,18 @@ pub fn after(
     attempts: u32,
     capacity: u32,
 ) -> Result<Next, GpuError> {
-    let most = gpu.binding_limit() / 16;
+    let most = nodes_max(gpu);
     if attempts <= capacity {
         return Ok(Next::Done);
     }
-    if attempts < SATURATED && u64::from(attempts) <= most {
+    if attempts < SATURATED && attempts <= most {
         return Ok(Next::Resize(attempts));
     }
     band.halves().map(Next::Split).ok_or(GpuError::Limit {
         adapter: gpu.name.clone(),
         what,
         needed: u64::from(attempts),
-        limit: most,
+        limit: u64::from(most),
     })
 }
 
