@@ -61,7 +61,7 @@ pub struct Figures {
 /// A difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Row in [`Scene::triangles`].
+    /// Row in [`triptych_spec::scene::Scene::triangles`].
     pub triangle: usize,
     /// What differs.
     pub kind: Kind,

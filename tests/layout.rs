@@ -1,0 +1,249 @@
+//! What crosses from Rust to WGSL is laid out alike on both sides: constants, structs,
+//! workgroup sizes, bindings. Every program is linked and taken apart by naga, in the
+//! baseline form and in the one with native 64-bit integers.
+
+use std::mem::{offset_of, size_of};
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{AddressSpace, Expression, Literal, Module, ShaderStage, StorageAccess, TypeInner};
+use triptych_gpu::abuffer::{PROGRESS, STEPS};
+use triptych_gpu::frame::{Frame, WORKGROUP};
+use triptych_gpu::raster::SATURATED;
+use triptych_gpu::wgsl::{Linked, Program, Sources};
+use triptych_spec::abuffer::{EOL, NOTHING};
+use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
+
+/// The files with entry points.
+const ROOTS: [&str; 3] = ["abuffer", "raster", "vertex"];
+
+/// WebGPU's default for `maxStorageBuffersPerShaderStage`.
+const STORAGE_BUFFERS: usize = 8;
+
+/// Fields with their offsets, and the size in bytes.
+type Layout = (Vec<(String, u32)>, u32);
+
+/// A program and where it comes from.
+struct Root {
+    name: String,
+    native: bool,
+    program: Program,
+}
+
+fn programs() -> Vec<Root> {
+    let link = |(root, native): (&str, bool)| {
+        let name = format!("{root} ({})", if native { "native" } else { "baseline" });
+        let program = Sources::shipped(native).link(root).and_then(Linked::parse);
+        let program = program.unwrap_or_else(|e| panic!("{name}: {e}"));
+        Root {
+            name,
+            native,
+            program,
+        }
+    };
+    let all = ROOTS
+        .iter()
+        .flat_map(|root| [(*root, false), (*root, true)]);
+    all.map(link).collect()
+}
+
+/// A module constant; all that cross over are integers of 32 bits.
+fn constant(module: &Module, name: &str) -> Option<i64> {
+    let named = |c: &naga::Constant| c.name.as_deref() == Some(name);
+    let (_, constant) = module.constants.iter().find(|(_, c)| named(c))?;
+    match module.global_expressions[constant.init] {
+        Expression::Literal(Literal::U32(v)) => Some(v.into()),
+        Expression::Literal(Literal::I32(v)) => Some(v.into()),
+        ref other => panic!("{name} is no integer: {other:?}"),
+    }
+}
+
+fn layout(module: &Module, name: &str) -> Option<Layout> {
+    let (_, ty) = module
+        .types
+        .iter()
+        .find(|(_, t)| t.name.as_deref() == Some(name))?;
+    let TypeInner::Struct { members, span } = &ty.inner else {
+        panic!("{name} is no struct");
+    };
+    let field = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset);
+    Some((members.iter().map(field).collect(), *span))
+}
+
+/// A struct of 32-bit words.
+fn words(names: &[&str]) -> Layout {
+    let fields: Vec<(String, u32)> = (0..)
+        .step_by(4)
+        .zip(names)
+        .map(|(at, n)| (n.to_string(), at))
+        .collect();
+    let size = 4 * u32::try_from(names.len()).expect("few");
+    (fields, size)
+}
+
+/// Looks something up in every program, and demands that it is as expected wherever it
+/// occurs, and that it occurs.
+fn everywhere<T: PartialEq + std::fmt::Debug>(
+    name: &str,
+    expected: &T,
+    find: impl Fn(&Module, &str) -> Option<T>,
+) {
+    let mut seen = 0;
+    for root in programs() {
+        if let Some(found) = find(&root.program.module, name) {
+            assert_eq!(found, *expected, "{name} in {}, not as in Rust", root.name);
+            seen += 1;
+        }
+    }
+    assert!(seen > 0, "{name} is in no program");
+}
+
+#[test]
+fn constants_are_those_of_rust() {
+    let steps = i64::try_from(STEPS).expect("a word");
+    let corners = i64::try_from(CORNERS_MAX).expect("a word");
+    let constants = [
+        ("EOL", i64::from(EOL)),
+        ("NOTHING", i64::from(NOTHING)),
+        ("GUARD", i64::from(GUARD)),
+        ("SATURATED", i64::from(SATURATED)),
+        ("WORKGROUP", i64::from(WORKGROUP)),
+        ("STEPS", steps),
+        ("CORNERS_MAX", corners),
+        ("DEPTH_ONE", i64::from(DEPTH_ONE)),
+    ];
+    for (name, value) in constants {
+        everywhere(name, &value, constant);
+    }
+}
+
+#[test]
+fn the_frame_is_that_of_rust() {
+    macro_rules! fields {
+        ($($field:ident)*) => {
+            vec![$((stringify!($field).to_owned(), offset_of!(Frame, $field))),*]
+        };
+    }
+    let fields = fields!(
+        width height bits capacity first_row rows work_first work_count items guard_x guard_y
+        depth_test background
+    );
+    let word = |at: usize| u32::try_from(at).expect("a small struct");
+    let fields = fields
+        .into_iter()
+        .map(|(name, at)| (name, word(at)))
+        .collect();
+    everywhere("Frame", &(fields, word(size_of::<Frame>())), layout);
+}
+
+#[test]
+fn records_are_the_words_that_the_host_reads() {
+    everywhere("Node", &words(&["key", "next", "prim", "mask"]), layout);
+    everywhere(
+        "Fragment",
+        &words(&["pixel", "prim", "key", "mask"]),
+        layout,
+    );
+    everywhere("Vertex", &words(&["x", "y", "z", "instance"]), layout);
+    let size = |module: &Module, name: &str| Some(u64::from(layout(module, name)?.1));
+    everywhere("Progress", &PROGRESS, size);
+}
+
+#[test]
+fn workgroups_have_the_size_that_the_host_counts_with() {
+    for root in programs() {
+        for entry in &root.program.module.entry_points {
+            let size = match entry.stage {
+                ShaderStage::Compute => [WORKGROUP, 1, 1],
+                _ => [0; 3],
+            };
+            assert_eq!(
+                entry.workgroup_size, size,
+                "{} of {}",
+                entry.name, root.name
+            );
+        }
+    }
+}
+
+#[test]
+fn bindings_of_an_entry_point_are_unique_and_few() {
+    for root in programs() {
+        let module = &root.program.module;
+        for (number, entry) in module.entry_points.iter().enumerate() {
+            let at = format!("{} of {}", entry.name, root.name);
+            let info = root.program.info.get_entry_point(number);
+            let used = module
+                .global_variables
+                .iter()
+                .filter(|(v, _)| !info[*v].is_empty());
+            let bound: Vec<_> = used
+                .map(|(_, v)| v)
+                .filter(|v| v.binding.is_some())
+                .collect();
+            let mut places: Vec<u32> = Vec::new();
+            for variable in &bound {
+                let place = variable.binding.expect("only those with one");
+                assert_eq!(place.group, 0, "{at}: {:?}", variable.name);
+                assert!(
+                    !places.contains(&place.binding),
+                    "{at}: binding {} twice",
+                    place.binding
+                );
+                places.push(place.binding);
+                let AddressSpace::Storage { access } = variable.space else {
+                    continue;
+                };
+                // WebGPU has no writable storage in the vertex stage.
+                let writes = access.contains(StorageAccess::STORE);
+                assert!(
+                    entry.stage != ShaderStage::Vertex || !writes,
+                    "{at} may write {:?}",
+                    variable.name
+                );
+            }
+            let is_storage =
+                |v: &&&naga::GlobalVariable| matches!(v.space, AddressSpace::Storage { .. });
+            let storage = bound.iter().filter(is_storage).count();
+            assert!(
+                storage <= STORAGE_BUFFERS,
+                "{at} binds {storage} storage buffers"
+            );
+        }
+    }
+}
+
+#[test]
+fn baseline_programs_need_no_capability() {
+    for root in programs() {
+        let capabilities = match root.native {
+            true => Capabilities::SHADER_INT64,
+            false => Capabilities::empty(),
+        };
+        let valid =
+            Validator::new(ValidationFlags::all(), capabilities).validate(&root.program.module);
+        assert!(valid.is_ok(), "{}: {:?}", root.name, valid.err());
+        // The two forms differ, so that both are tested: 64-bit integers prove it.
+        let wide = |t: &naga::Type| matches!(t.inner, TypeInner::Scalar(s) if s.width == 8);
+        let has_wide = root.program.module.types.iter().any(|(_, t)| wide(t));
+        let expects_wide = root.native && !root.name.starts_with("vertex");
+        assert_eq!(has_wide, expects_wide, "64-bit integers in {}", root.name);
+    }
+}
+
+#[test]
+fn no_file_with_entry_points_is_left_out() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("gpu");
+    let files = std::fs::read_dir(folder.join("src")).expect("the folder of the kernels");
+    let mut roots: Vec<String> = Vec::new();
+    for path in files.map(|f| f.expect("a file").path()) {
+        if path.extension().is_some_and(|e| e == "wgsl") {
+            let text = std::fs::read_to_string(&path).expect("text");
+            if text.contains("@compute") || text.contains("@fragment") {
+                let stem = path.file_stem().expect("it has an extension");
+                roots.push(stem.to_string_lossy().into_owned());
+            }
+        }
+    }
+    roots.sort();
+    assert_eq!(roots, ROOTS, "files with entry points");
+}
