@@ -23,8 +23,8 @@ fn opacity() -> impl Strategy<Value = f32> {
     ]
 }
 
-/// Triangles on the grid with colours; of neighbouring rows some come from one
-/// source triangle, as pieces of a clipped one do.
+/// Triangles on the grid with colours. Of neighbouring rows some come from one source
+/// triangle, as pieces of a clipped one do, and some coincide.
 #[derive(Clone, Debug)]
 pub struct Layers {
     pub scene: Scene,
@@ -37,13 +37,16 @@ fn layers(count: std::ops::Range<usize>) -> impl Strategy<Value = Layers> {
         let colour = (0_f32..2.0, 0_f32..2.0, 0_f32..2.0, opacity());
         let colours = prop::collection::vec(colour.prop_map(|(r, g, b, a)| [r, g, b, a]), n);
         let background = [0_f32..1.0, 0_f32..1.0, 0_f32..1.0];
-        let pieces = prop::collection::vec(any::<bool>(), n);
+        let pieces = prop::collection::vec(any::<[bool; 2]>(), n);
         (colours, background, pieces).prop_map(move |(colours, background, pieces)| {
             let mut primitives = primitives.clone();
-            let mut row = 0;
-            for (source, piece) in primitives.source.iter_mut().zip(pieces) {
-                *source = row;
-                row += u32::from(!piece);
+            let mut source = 0;
+            for (row, [piece, same]) in pieces.into_iter().enumerate() {
+                primitives.source[row] = source;
+                source += u32::from(!piece);
+                if same && row > 0 {
+                    primitives.prims[row] = primitives.prims[row - 1];
+                }
             }
             let scene = painted(&primitives, &colours, background);
             Layers { scene, primitives }

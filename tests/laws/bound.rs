@@ -57,6 +57,11 @@ fn number() -> impl Strategy<Value = f32> {
     ]
 }
 
+/// Coordinates: numbers, and tiny ones with subnormals among them.
+fn coordinate() -> impl Strategy<Value = f32> {
+    prop_oneof![2 => number(), 1 => prop::num::f32::SUBNORMAL, 1 => -1e-18_f32..1e-18]
+}
+
 fn expression() -> impl Strategy<Value = Expression> {
     number().prop_map(Number).prop_recursive(6, 40, 2, |part| {
         let operation = prop::sample::select(vec!['+', '-', '*', '/']);
@@ -88,8 +93,11 @@ proptest! {
     /// So is a sum of products, in any order, fused or not, with rounded coefficients.
     #[test]
     fn sums_of_products(
-        c in [-1e6..1e6, -1.0..1.0, -1e-3..1e-3, -1e30..1e30],
-        [x, y, z] in [number(), number(), number()],
+        c in prop_oneof![
+            [-1e6..1e6, -1.0..1.0, -1e-3..1e-3, -1e30..1e30],
+            [-1e-38..1e-38, -1e-20..1e-20, -1e-40..1e-40, -1e-38..1e-38],
+        ],
+        [x, y, z] in [coordinate(), coordinate(), coordinate()],
         order in Just([0, 1, 2, 3]).prop_shuffle(),
         seed in any::<u64>(),
     ) {

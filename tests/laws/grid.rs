@@ -55,8 +55,26 @@ pub fn triangle(size: Size, bits: u32) -> BoxedStrategy<Triangle> {
         2 => (near(2 * one), [-one..=one, -one..=one], depth())
             .prop_map(|((a, b), [dx, dy], z)| [a, b, [a[0] + dx, a[1] + dy, z]]),
         1 => [free(), free()].prop_map(|[a, b]| [a, b, a]),
+        1 => whole_guard(size, bits),
     ]
     .boxed()
+}
+
+/// Half of the guard rectangle, parallel to the screen: the largest numerators, which
+/// the area divides exactly.
+fn whole_guard(size: Size, bits: u32) -> impl Strategy<Value = Triangle> {
+    let ends = move |side: u32| [0, GUARD].map(|end| (guard_origin(side) + end) << bits);
+    let ([left, right], [top, bottom]) = (ends(size.width), ends(size.height));
+    (depth(), 0_usize..4).prop_map(move |(z, without)| {
+        let mut corners = vec![
+            [left, top, z],
+            [right, top, z],
+            [right, bottom, z],
+            [left, bottom, z],
+        ];
+        corners.remove(without);
+        [corners[0], corners[1], corners[2]]
+    })
 }
 
 /// Triangles of any kind.

@@ -56,6 +56,20 @@ fn position() -> impl Strategy<Value = Position<f64>> {
     (across(), across(), z, w).prop_map(|(x, y, z, w)| [x * w, y * w, z * w, w])
 }
 
+/// Positions that no plane cuts off; some lie in a plane. Divisors are powers of two,
+/// so that this holds exactly.
+fn visible(size: Size) -> impl Strategy<Value = Position<f64>> {
+    let across = |side| {
+        let low = guard_origin(side);
+        prop_oneof![3 => low..=low + GUARD, 1 => prop::sample::select(vec![low, low + GUARD])]
+    };
+    let z = prop_oneof![2 => 0.0..=1.0, 1 => Just(0.0), 1 => Just(1.0)];
+    (across(size.width), across(size.height), z, -3_i32..4).prop_map(|(x, y, z, w)| {
+        let w = f64::from(w).exp2();
+        [f64::from(x) * w, f64::from(y) * w, z * w, w]
+    })
+}
+
 fn target() -> impl Strategy<Value = Size> {
     (1_u32..2049, 1_u32..2049).prop_map(|(width, height)| Size { width, height })
 }
@@ -95,17 +109,65 @@ proptest! {
         }
     }
 
-    /// What is visible as a whole stays as it is, to the bit.
+    /// What is visible as a whole stays as it is, to the bit, on the planes too.
     #[test]
-    fn visible_triangles_stay(size in target(), corners in [position(), position(), position()]) {
-        let inside = |p: &Position<f64>| Plane::all(size).iter().all(|plane| plane.distance(*p) >= 0.0);
-        let all = corners.iter().all(|p| inside(p) && p[3] > 0.0);
+    fn visible_triangles_stay(
+        (size, corners) in target().prop_flat_map(|size| {
+            (Just(size), [visible(size), visible(size), visible(size)])
+        })
+    ) {
         let kept: Vec<_> = cut(size, corners).iter().map(bits).collect();
-        if all {
-            prop_assert_eq!(kept, corners.iter().map(bits).collect::<Vec<_>>());
-        } else {
-            prop_assert!(kept.len() <= CORNERS_MAX);
-            prop_assert_ne!(kept, corners.iter().map(bits).collect::<Vec<_>>());
+        prop_assert_eq!(kept, corners.iter().map(bits).collect::<Vec<_>>());
+    }
+
+    /// What is left lies on the kept side of every plane, and the ends of an edge on
+    /// the edge, but for rounding.
+    #[test]
+    fn clipped_is_inside(size in target(), [a, b, c] in [position(), position(), position()]) {
+        // A cut rounds distances and components a dozen times, none larger than
+        // this; there are six cuts.
+        let largest = [a, b, c].as_flattened().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let room = 6.0 * 16.0 * f64::EPSILON * (1.0 + f64::from(GUARD)) * largest;
+        let polygon = cut(size, [a, b, c]);
+        prop_assert!(polygon.len() <= CORNERS_MAX);
+        for p in &polygon {
+            for plane in Plane::all(size) {
+                prop_assert!(plane.distance(*p) >= -room, "{plane:?} {p:?}");
+            }
+        }
+        let along = [0, 1, 2, 3].map(|i| b[i] - a[i]);
+        let dot = |u: [f64; 4], v: [f64; 4]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
+        for p in cut(size, [a, b, b]) {
+            let t = dot([0, 1, 2, 3].map(|i| p[i] - a[i]), along) / dot(along, along);
+            prop_assert!((-1e-9..=1.0 + 1e-9).contains(&t), "{t}");
+            for i in 0..4 {
+                let error = (p[i] - (a[i] + t * along[i])).abs();
+                prop_assert!(error <= room, "{p:?} is off the edge by {error:e}");
+            }
+        }
+    }
+
+    /// A point of the grid is snapped to itself; a depth to its key, rounded down.
+    #[test]
+    fn grid_points_stay(
+        [width, height] in [0_u32..12, 0..12],
+        sub in 1_u32..=8,
+        [x, y] in [0_f64..=1.0, 0.0..=1.0],
+        z in 0_u32..=1 << 20,
+    ) {
+        let size = Size { width: 1 << width, height: 1 << height };
+        let on_grid = |share: f64, side: u32| (share * f64::from(side << sub)).round();
+        let (x, y) = (on_grid(x, size.width), on_grid(y, size.height));
+        // All powers of two: clip space holds the same points exactly.
+        let clip = |at: f64, side: u32| 2.0 * at / f64::from(side << sub) - 1.0;
+        #[expect(clippy::cast_possible_truncation, reason = "at most 20 bits")]
+        let place = [clip(x, size.width), -clip(y, size.height)].map(|v| v as f32);
+        let point = [place[0], place[1], z as f32 / (1 << 20) as f32];
+        let scene = scene(size, Matrix::IDENTITY, &[point], &[[0; 3]]);
+        let key = (u64::from(z) * u64::from(DEPTH_ONE.cast_unsigned())) >> 20;
+        for [seen_x, seen_y, seen_z] in primitives(&scene, sub).snapped {
+            prop_assert_eq!([seen_x, seen_y].map(f64::from), [x, y]);
+            prop_assert_eq!(seen_z.cast_unsigned(), u32::try_from(key).expect("31 bits"));
         }
     }
 

@@ -1,0 +1,137 @@
+//! What a stage is called, and where each leg keeps it: the function of the spec, the
+//! entry points in WGSL, the name on the command line and in results.
+//!
+//! `tests/registry.rs` holds it against the code in both directions: nothing listed
+//! is absent, and no stage of the spec and no entry point is missing here.
+
+/// A group of stages with one stem everywhere: `spec/src/F.rs`, `gpu/src/F.rs`,
+/// `gpu/src/F.wgsl`, `tests/laws/F.rs`, `corpus/F`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Family {
+    /// The stem.
+    pub name: &'static str,
+    /// Its stages, in the order in which they run.
+    pub stages: &'static [Stage],
+    /// Why it has no scenes of its own, if it has none.
+    pub no_corpus: Option<&'static str>,
+}
+
+/// A stage. Its name is that of the spec's function and of its pass in a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stage {
+    /// The name.
+    pub name: &'static str,
+    /// On the compute path.
+    pub compute: Twin,
+    /// On the fragment path, after the vertex entry point [`PLACE`].
+    pub fragment: Twin,
+    /// Whether `--gpu-from` can begin with it, or why not.
+    pub gpu_from: Result<(), &'static str>,
+}
+
+/// A stage's counterpart on a path of the GPU leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Twin {
+    /// Entry points of the family's WGSL file, one for each pass.
+    Entries(&'static [&'static str]),
+    /// None, and why.
+    None(&'static str),
+}
+
+/// The vertex entry point of every pipeline on the fragment path, in `place.wgsl`.
+pub const PLACE: &str = "place";
+
+/// All families, in the order in which they run.
+pub const FAMILIES: &[Family] = &[
+    Family {
+        name: "vertex",
+        stages: &[
+            Stage {
+                gpu_from: Ok(()),
+                ..vertex("transform", &["transform"])
+            },
+            vertex("clip", &["clip"]),
+            vertex("snap", &["snap"]),
+        ],
+        no_corpus: Some("every scene of the other families goes through it"),
+    },
+    Family {
+        name: "raster",
+        stages: &[Stage {
+            name: "cover",
+            compute: Twin::Entries(&["cover"]),
+            fragment: Twin::Entries(&["cover_fragment"]),
+            gpu_from: Ok(()),
+        }],
+        no_corpus: None,
+    },
+    Family {
+        name: "abuffer",
+        stages: &[
+            Stage {
+                name: "opaque",
+                compute: Twin::Entries(&["opaque_nearest", "opaque_first"]),
+                fragment: Twin::Entries(&["opaque_nearest_fragment", "opaque_first_fragment"]),
+                gpu_from: Err("it covers for itself: from cover"),
+            },
+            Stage {
+                name: "build",
+                compute: Twin::Entries(&["build"]),
+                fragment: Twin::Entries(&["build_fragment"]),
+                gpu_from: Err("it covers for itself: from cover"),
+            },
+            per_pixel("sort", &["sort"]),
+            per_pixel("resolve", &["resolve"]),
+        ],
+        no_corpus: None,
+    },
+];
+
+/// Names of result rows that are no stage, and what they compare.
+pub const ROWS: &[(&str, &str)] = &[
+    ("expect", "the spec with a scene's closed-form answers"),
+    ("vertex", "corners after transform, clip and snap"),
+    ("overflow", "attempts that ran out of nodes"),
+    ("end to end", "all stages from the GPU's own vertices"),
+    ("plan", "a leg with and without skipping"),
+    ("leg", "a leg that could not run"),
+    ("all", "a scene that could not be replayed"),
+];
+
+const fn vertex(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("the vertex stages run in compute kernels on both paths"),
+        gpu_from: Err("the vertex stages are judged together: from transform"),
+    }
+}
+
+const fn per_pixel(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on pixels, not on triangles: one kernel serves both paths"),
+        gpu_from: Ok(()),
+    }
+}
+
+/// Every stage, in the order in which they run.
+pub fn stages() -> impl Iterator<Item = &'static Stage> {
+    FAMILIES.iter().flat_map(|family| family.stages)
+}
+
+/// Whether a result row may be called so.
+pub fn names_row(name: &str) -> bool {
+    stages().any(|stage| stage.name == name) || ROWS.iter().any(|(row, _)| *row == name)
+}
+
+impl Twin {
+    /// Entry points; none where there is no twin.
+    pub fn entries(self) -> &'static [&'static str] {
+        match self {
+            Self::Entries(entries) => entries,
+            Self::None(_) => &[],
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! The registry and the code say the same: stems, stages of the spec, entry points,
+//! passes of a plan, names on the command line.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use naga::ShaderStage;
+use triptych_gpu::wgsl::Sources;
+use triptych_harness::plan::Plan;
+use triptych_harness::registry::{FAMILIES, Family, PLACE, stages};
+use triptych_spec::scene::{Scene, Size};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("")
+}
+
+/// Files of a folder with an extension, sorted; none if there is no such folder.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let paths = entries.map(|e| e.expect("a folder can be listed").path());
+    let mut paths: Vec<PathBuf> = paths
+        .filter(|p| p.extension().is_some_and(|e| e == extension))
+        .collect();
+    paths.sort();
+    paths
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// Functions whose documentation begins with "Stage `name`", with that name.
+fn documented_stages(family: &Family) -> Vec<(String, String)> {
+    let source = root().join("spec/src").join(family.name);
+    let mut paths = vec![source.with_extension("rs")];
+    paths.extend(files(&source, "rs"));
+    let mut stages = Vec::new();
+    for path in paths {
+        let mut named: Option<String> = None;
+        for line in read(&path).lines() {
+            if let Some(rest) = line.strip_prefix("/// Stage `") {
+                named = rest.split('`').next().map(str::to_owned);
+            } else if let Some(rest) = line.strip_prefix("pub fn ") {
+                let end = rest.find(['(', '<']).expect("a function has parameters");
+                stages.extend(named.take().map(|named| (named, rest[..end].to_owned())));
+            } else if !line.starts_with("///") {
+                named = None;
+            }
+        }
+    }
+    stages.sort();
+    stages
+}
+
+#[test]
+fn stages_are_functions_of_the_spec() {
+    for family in FAMILIES {
+        let name = |s: &triptych_harness::registry::Stage| (s.name.to_owned(), s.name.to_owned());
+        let mut listed: Vec<_> = family.stages.iter().map(name).collect();
+        listed.sort();
+        assert_eq!(
+            documented_stages(family),
+            listed,
+            "spec/src/{0}.rs (documented stage, function) against the registry's {0}",
+            family.name
+        );
+    }
+}
+
+#[test]
+fn entry_points_are_those_of_the_wgsl() {
+    for (family, native) in FAMILIES.iter().flat_map(|f| [(f, false), (f, true)]) {
+        let linked = Sources::shipped(native).link(family.name);
+        let program = linked.and_then(triptych_gpu::wgsl::Linked::parse);
+        let module = program.unwrap_or_else(|e| panic!("{e}")).module;
+        let entries = |stage: ShaderStage| -> BTreeSet<&str> {
+            let all = module.entry_points.iter().filter(|e| e.stage == stage);
+            all.map(|e| e.name.as_str()).collect()
+        };
+        let of = |twin: fn(&triptych_harness::registry::Stage) -> &'static [&'static str]| {
+            let all = family.stages.iter().flat_map(twin).copied();
+            all.collect::<BTreeSet<&str>>()
+        };
+        let fragment = of(|s| s.fragment.entries());
+        let place = (!fragment.is_empty()).then_some(PLACE);
+        let name = family.name;
+        assert_eq!(
+            entries(ShaderStage::Compute),
+            of(|s| s.compute.entries()),
+            "{name}, compute"
+        );
+        assert_eq!(entries(ShaderStage::Fragment), fragment, "{name}, fragment");
+        assert_eq!(
+            entries(ShaderStage::Vertex),
+            place.into_iter().collect(),
+            "{name}, vertex"
+        );
+        let stages = [
+            ShaderStage::Compute,
+            ShaderStage::Fragment,
+            ShaderStage::Vertex,
+        ];
+        assert!(
+            module
+                .entry_points
+                .iter()
+                .all(|e| stages.contains(&e.stage)),
+            "{name}: an entry point of another kind"
+        );
+    }
+}
+
+/// Only a family's own file and place.wgsl may have entry points: what is in others
+/// would be seen by no family, or by several.
+#[test]
+fn entry_points_are_in_the_families_files() {
+    let mut checked = 0;
+    for path in files(&root().join("gpu/src"), "wgsl") {
+        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let stem = stem.expect("a file has a name");
+        let kinds = ["@compute", "@fragment", "@vertex"];
+        let text = read(&path);
+        let has = text.lines().any(|l| kinds.iter().any(|k| l.starts_with(k)));
+        let may = stem == PLACE || FAMILIES.iter().any(|f| f.name == stem);
+        assert_eq!(
+            has,
+            may,
+            "{} has entry points: {has}; may have: {may}",
+            path.display()
+        );
+        checked += 1;
+    }
+    assert!(
+        checked > FAMILIES.len(),
+        "{checked} files of WGSL are not all"
+    );
+}
+
+#[test]
+fn families_have_one_stem() {
+    for family in FAMILIES {
+        let name = family.name;
+        for file in [
+            format!("spec/src/{name}.rs"),
+            format!("gpu/src/{name}.rs"),
+            format!("gpu/src/{name}.wgsl"),
+            format!("tests/laws/{name}.rs"),
+        ] {
+            assert!(root().join(&file).is_file(), "{file} is missing");
+        }
+        let corpus = root().join("corpus").join(name).is_dir();
+        assert_eq!(
+            corpus,
+            family.no_corpus.is_none(),
+            "corpus/{name} exists: {corpus}"
+        );
+    }
+    for folder in ["corpus", "tests/snapshots"] {
+        let Ok(entries) = fs::read_dir(root().join(folder)) else {
+            continue;
+        };
+        for entry in entries {
+            let entry = entry.expect("a folder can be listed");
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let known = FAMILIES.iter().any(|f| f.name == name);
+            let is_dir = entry.path().is_dir();
+            assert!(!is_dir || known, "{folder}/{name} is no family");
+        }
+    }
+}
+
+#[test]
+fn names_are_unique() {
+    let names: Vec<&str> = stages().map(|s| s.name).collect();
+    let unique: BTreeSet<&str> = names.iter().copied().collect();
+    assert_eq!(names.len(), unique.len(), "{names:?}");
+}
+
+/// A plan has a pass for each stage, in the order of the registry.
+#[test]
+fn passes_are_stages() {
+    let scene = Scene {
+        size: Size {
+            width: 1,
+            height: 1,
+        },
+        instances: Vec::new(),
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+        background: [0.0; 3],
+    };
+    let plan = Plan::new(&scene, false);
+    let passes: Vec<&str> = plan.passes.iter().map(|p| p.name).collect();
+    let mut expected: Vec<&str> = stages().map(|s| s.name).collect();
+    // A condition inside stage build, which a plan decides on like a pass.
+    expected.push("depth test");
+    assert_eq!(passes, expected, "passes against stages");
+}
