@@ -1,0 +1,110 @@
+//! All adapters of the machine, opened and calibrated once, lent to one test at a
+//! time.
+
+use std::ops::{Deref, DerefMut};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use triptych_harness::replay::gpu::Adapter;
+
+/// How many tests may run at once, each on devices of its own: what the spec and
+/// Embree do for one scene fills the time in which another waits for its device.
+const SETS: usize = 2;
+
+/// Sets of devices, one for each adapter of the machine.
+#[derive(Default)]
+pub struct Devices {
+    state: Mutex<State>,
+    returned: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    idle: Vec<Vec<Adapter>>,
+    lent: usize,
+}
+
+/// A set that is given back when dropped.
+pub struct Lent<'a> {
+    from: &'a Devices,
+    set: Vec<Adapter>,
+    spoilt: bool,
+}
+
+impl Devices {
+    /// A set of devices, as soon as there is one.
+    ///
+    /// # Errors
+    /// One line if there is no adapter, or one cannot be opened.
+    pub fn take(&self) -> Result<Lent<'_>, String> {
+        let mut state = self.state();
+        while state.lent == SETS {
+            state = self
+                .returned
+                .wait(state)
+                .unwrap_or_else(PoisonError::into_inner);
+        }
+        state.lent += 1;
+        let idle = state.idle.pop();
+        drop(state);
+        let mut lent = Lent {
+            from: self,
+            set: Vec::new(),
+            spoilt: true,
+        };
+        lent.set = match idle {
+            Some(set) => set,
+            None => open()?,
+        };
+        lent.spoilt = false;
+        Ok(lent)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn open() -> Result<Vec<Adapter>, String> {
+    let adapters = Adapter::open_all(&[]).map_err(|e| e.to_string())?;
+    if adapters.is_empty() {
+        return Err(
+            "no GPU adapter: `./x setup` installs two software drivers, \
+                    `./x doctor` says what is missing"
+                .into(),
+        );
+    }
+    Ok(adapters)
+}
+
+impl Lent<'_> {
+    /// A device is lost or in doubt: no other test gets this set.
+    pub fn spoil(&mut self) {
+        self.spoilt = true;
+    }
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        let set = std::mem::take(&mut self.set);
+        let mut state = self.from.state();
+        state.lent -= 1;
+        if !self.spoilt {
+            state.idle.push(set);
+        }
+        self.from.returned.notify_one();
+    }
+}
+
+impl Deref for Lent<'_> {
+    type Target = [Adapter];
+
+    fn deref(&self) -> &[Adapter] {
+        &self.set
+    }
+}
+
+impl DerefMut for Lent<'_> {
+    fn deref_mut(&mut self) -> &mut [Adapter] {
+        &mut self.set
+    }
+}

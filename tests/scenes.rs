@@ -1,0 +1,193 @@
+//! One test per scene of the corpus: every leg on every adapter agrees, and what the
+//! spec found is what its snapshot says.
+//!
+//! A scene without its mesh is ignored, and says so; asked for all the same
+//! (`--include-ignored`), it fails. Snapshots: `cargo insta review`.
+
+mod devices;
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::panic::catch_unwind;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use devices::Devices;
+use libtest_mimic::{Arguments, Failed, Trial};
+use triptych_harness::corpus::{self, Entry};
+use triptych_harness::replay::gpu::Adapter;
+use triptych_harness::replay::{Options, Outcome, replay};
+use triptych_harness::row::{Row, Verdict};
+use triptych_harness::scene::file::SceneFile;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let entries = match corpus::list(&corpus::root()) {
+        Ok(entries) => entries,
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::from(2);
+        }
+    };
+    let devices = Arc::new(Devices::default());
+    let mut trials: Vec<Trial> = entries
+        .iter()
+        .map(|entry| {
+            let missing = missing_mesh(entry);
+            if let (Some(mesh), false) = (&missing, arguments.list) {
+                let name = &entry.name;
+                eprintln!("{name} is ignored: mesh {mesh} is not there; `./x setup` installs it");
+            }
+            let (devices, entry) = (devices.clone(), entry.clone());
+            Trial::test(entry.name.clone(), move || test(&entry, &devices))
+                .with_ignored_flag(missing.is_some())
+        })
+        .collect();
+    trials.push(Trial::test("snapshots/every-one-has-a-scene", move || {
+        dangling(&snapshots(), &entries)
+    }));
+    libtest_mimic::run(&arguments, trials).exit_code()
+}
+
+/// The first package that a scene wants and that is not installed. A scene that
+/// cannot be read is none of them: its test says why.
+fn missing_mesh(entry: &Entry) -> Option<String> {
+    let text = std::fs::read_to_string(&entry.path).ok()?;
+    let scene: SceneFile = toml::from_str(&text).ok()?;
+    let mut packages = scene
+        .mesh
+        .iter()
+        .filter_map(|m| m.get_ref().package.as_ref());
+    let absent = packages.find(|p| !corpus::meshes().join(p.get_ref()).exists())?;
+    Some(absent.get_ref().clone())
+}
+
+fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
+    let mut adapters = devices.take()?;
+    let outcome = replay(entry, &adapters, &Options::default())?;
+    let mut wrong = judge(&outcome, &adapters);
+    if !wrong.is_empty() {
+        adapters.spoil();
+    }
+    drop(adapters);
+    // insta prints the difference before it panics.
+    if catch_unwind(|| assert_snapshot(entry, &outcome)).is_err() {
+        wrong.push("the spec found what its snapshot does not say: cargo insta review".into());
+    }
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    let mut message = wrong.join("\n");
+    let _ = write!(
+        message,
+        "\nreplay it: cargo triptych replay --exact {}",
+        entry.name
+    );
+    Err(message.into())
+}
+
+/// What is wrong with an outcome: rows that diverge, legs that compared nothing and
+/// do not say why.
+fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
+    if outcome.facts.is_none() {
+        let reasons = outcome.rows.iter().filter_map(|r| r.skipped.clone());
+        return reasons
+            .chain(["the scene was not replayed".into()])
+            .collect();
+    }
+    let diverging = outcome
+        .rows
+        .iter()
+        .filter(|r| r.verdict() == Verdict::Diverge);
+    let mut wrong: Vec<String> = diverging.map(describe).collect();
+    if !wrong.is_empty() {
+        wrong.extend(outcome.described.iter().map(|d| format!("  {d}")));
+    }
+    let gpus = adapters.iter().flat_map(|adapter| {
+        let label =
+            |path: &triptych_gpu::raster::Path| format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        Options::default()
+            .paths
+            .iter()
+            .map(label)
+            .collect::<Vec<_>>()
+    });
+    for leg in gpus.chain(["embree".to_owned()]) {
+        let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.b == leg).collect();
+        let compared = rows.iter().any(|r| r.compared > 0);
+        if rows.is_empty() || (!compared && rows.iter().any(|r| r.skipped.is_none())) {
+            wrong.push(format!("nothing was compared with {leg}, for no reason"));
+        }
+    }
+    wrong
+}
+
+fn describe(row: &Row) -> String {
+    let causes: Vec<String> = row
+        .causes
+        .iter()
+        .map(|(c, n)| format!("{} {n}", c.name()))
+        .collect();
+    format!(
+        "{} of {}: {} of {} {} differ ({}; {} unexplained); {} admitted{}: {}",
+        row.stage,
+        row.b,
+        row.differ,
+        row.compared,
+        row.unit,
+        causes.join(", "),
+        row.unexplained,
+        row.admitted,
+        row.admitted_budget
+            .map_or(String::new(), |b| format!(" of a share of {b}")),
+        row.note,
+    )
+}
+
+fn snapshots() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots")
+}
+
+/// Holds the facts against `snapshots/<family>/<case>.snap`. A missing snapshot
+/// fails, too, and leaves a pending one for review.
+fn assert_snapshot(entry: &Entry, outcome: &Outcome) {
+    let Some(facts) = &outcome.facts else { return };
+    let case = entry.name.rsplit('/').next().unwrap_or(&entry.name);
+    let mut settings = insta::Settings::new();
+    settings.set_snapshot_path(snapshots().join(&entry.family));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_description(&outcome.purpose);
+    settings.set_input_file(&entry.path);
+    settings.bind(|| insta::assert_yaml_snapshot!(case, facts));
+}
+
+/// Fails for files under `snapshots/` that belong to no scene.
+fn dangling(folder: &Path, entries: &[Entry]) -> Result<(), Failed> {
+    let scenes: BTreeSet<PathBuf> = entries
+        .iter()
+        .map(|e| folder.join(format!("{}.snap", e.name)))
+        .collect();
+    let mut left = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for file in std::fs::read_dir(&folder)? {
+            let path = file?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if !scenes.contains(&path.with_extension("snap")) {
+                left.push(path.display().to_string());
+            }
+        }
+    }
+    left.sort();
+    match left.is_empty() {
+        true => Ok(()),
+        false => Err(format!(
+            "no scene has these snapshots; delete them:\n{}",
+            left.join("\n")
+        )
+        .into()),
+    }
+}
