@@ -165,6 +165,8 @@ mod tests {
         ];
         assert_eq!(richness.collect::<Vec<_>>(), expected);
         assert_eq!(widths[0], None, "a sentence at last");
+        let narrowest = widths[1].map(|l| (l.name, l.cell));
+        assert_eq!(narrowest, Some((NAME_TIGHT, CELL_TIGHT)), "close columns");
         for (layout, window) in (20..140).map(|w| (Layout::fit(w, &pairs), w)) {
             let Some(l) = layout else { continue };
             assert!((NAME_TIGHT..=NAME[1]).contains(&l.name), "{window}: {l:?}");
