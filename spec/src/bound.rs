@@ -5,7 +5,7 @@
 //! Accuracy"): sums and products are correctly rounded in an unspecified
 //! direction, hence within one unit [`U`]; division within 2.5; any subnormal may
 //! be flushed, hence [`TINY`] once per operation; sums may be reassociated and
-//! fused, which [`sum_of_products`] allows for. An operation whose operands leave
+//! fused, which [`Real::sum_of_products`] allows for. An operation whose operands leave
 //! the range that WGSL defines has an infinite bound: nothing is promised there.
 
 /// Relative error of one correctly rounded operation, direction unspecified.
