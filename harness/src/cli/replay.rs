@@ -110,7 +110,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         Some(path) => Some(json::Writer::create(path).context("cannot write --json")?),
         None => None,
     };
-    let mut reporter = Reporter::new(selected.len());
+    let mut reporter = Reporter::new(selected.len()).with_options(args.again());
     let (mut rows, mut scenes) = (Vec::new(), Vec::new());
     for entry in &selected {
         reporter.scene_started(&entry.name);
@@ -181,6 +181,20 @@ impl Args {
             anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
         }
         Ok(adapters)
+    }
+
+    /// The options that a command must repeat to see the same result.
+    fn again(&self) -> String {
+        let mut words = Vec::new();
+        if let Some(seed) = self.seed {
+            words.push(format!("--seed {seed}"));
+        }
+        if let Some(stage) = self.gpu_from.to_possible_value() {
+            let given = !matches!(self.gpu_from, Stage::Cover);
+            words.extend(given.then(|| format!("--gpu-from {}", stage.get_name())));
+        }
+        words.extend(self.no_skip.then(|| "--no-skip".to_owned()));
+        words.join(" ")
     }
 
     fn options(&self) -> Options {
