@@ -130,9 +130,14 @@ proptest! {
         let room = 6.0 * 16.0 * f64::EPSILON * (1.0 + f64::from(GUARD)) * largest;
         let polygon = cut(size, [a, b, c]);
         prop_assert!(polygon.len() <= CORNERS_MAX);
-        for p in &polygon {
-            for plane in Plane::all(size) {
-                prop_assert!(plane.distance(*p) >= -room, "{plane:?} {p:?}");
+        let guard = [size.width, size.height].map(|side| {
+            let low = guard_origin(side);
+            [low, low + GUARD].map(f64::from)
+        });
+        for [x, y, z, w] in polygon {
+            for (at, [low, high]) in [(x, guard[0]), (y, guard[1]), (z, [0.0, 1.0])] {
+                let inside = low * w - room <= at && at <= high * w + room;
+                prop_assert!(inside, "{at} is not in {low} to {high} times {w}");
             }
         }
         let along = [0, 1, 2, 3].map(|i| b[i] - a[i]);

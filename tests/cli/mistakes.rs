@@ -1,0 +1,147 @@
+//! Mistakes of a user: one line that says where and what, exit code 2.
+
+use super::{PACKAGED, Place, SCENE};
+
+/// Runs what must fail, and gives the line without the program's name.
+#[track_caller]
+fn mistake(place: &Place, arguments: &[&str]) -> String {
+    let ran = place.run(arguments).expect(2);
+    let line = ran.stderr.strip_suffix('\n').unwrap_or(&ran.stderr);
+    assert!(!line.contains('\n'), "more than one line:\n{}", ran.stderr);
+    assert!(!line.contains('\x1b'), "an escape code: {line:?}");
+    let message = line.strip_prefix("triptych: ");
+    message
+        .unwrap_or_else(|| panic!("{line:?} does not say whose it is"))
+        .to_owned()
+}
+
+/// The same, with nothing on standard output.
+#[track_caller]
+fn only(place: &Place, arguments: &[&str]) -> String {
+    let ran = place.run(arguments);
+    assert_eq!(ran.stdout, "", "standard output of {arguments:?}");
+    mistake(place, arguments)
+}
+
+#[track_caller]
+fn assert_parts(line: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(line.contains(part), "{line:?} lacks {part:?}");
+    }
+}
+
+/// Each with arguments that start no GPU, so that the table is quick.
+#[test]
+fn files_with_a_mistake() {
+    let place = Place::new("mistakes");
+    let scene = |from: &str, to: &str| SCENE.replace(from, to);
+    place
+        .write("nan.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n")
+        .write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+        .write("none.obj", "v 0 0 0\n")
+        .write(
+            "key/scene.toml",
+            &scene("size = [8, 8]", "size = [8, 8]\nheigth = 3"),
+        )
+        .write("zero/scene.toml", &scene("[8, 8]", "[0, 8]"))
+        .write("large/scene.toml", &scene("[8, 8]", "[8, 2049]"))
+        .write("glass/scene.toml", &scene("opacity = 0.5", "opacity = 1.5"))
+        .write(
+            "file/scene.toml",
+            &scene("generate.stack", "file = \"gone.obj\" #"),
+        )
+        .write(
+            "name/scene.toml",
+            &PACKAGED.replace("bunny.obj", "rabbit.obj"),
+        )
+        .write("broken/scene.toml", "purpose = \"\n");
+    for (file, parts) in [
+        ("nan.obj", &["nan.obj:2: ", "nan"][..]),
+        ("range.obj", &["range.obj:4: ", "9"]),
+        ("none.obj", &["none.obj", "no triangles"]),
+        ("key/scene.toml", &["key/scene.toml:4: ", "heigth"]),
+        ("zero/scene.toml", &["zero/scene.toml:3: ", "0", "2048"]),
+        (
+            "large/scene.toml",
+            &["large/scene.toml:3: ", "2049", "2048"],
+        ),
+        ("glass/scene.toml", &["glass/scene.toml:13: ", "1.5"]),
+        ("file/scene.toml", &["gone.obj"]),
+        ("name/scene.toml", &["name/scene.toml:5: ", "rabbit.obj"]),
+        ("broken/scene.toml", &["broken/scene.toml:1: "]),
+        ("gone.obj", &["gone.obj"]),
+        ("gone/scene.toml", &["gone/scene.toml"]),
+    ] {
+        assert_parts(&only(&place, &["plan", file]), parts);
+        assert_parts(&only(&place, &["replay", "--leg", "spec", file]), parts);
+    }
+}
+
+#[test]
+fn names_that_match_nothing() {
+    let place = Place::new("names");
+    place.write("corpus/raster/quads/scene.toml", SCENE);
+    let parts = ["nonsuch", "no scene", "triptych list"];
+    for command in ["list", "plan", "replay"] {
+        assert_parts(&only(&place, &[command, "nonsuch"]), &parts);
+    }
+    // A part of a name is no whole name.
+    assert_parts(
+        &only(&place, &["list", "--exact", "raster/quad"]),
+        &["raster/quad"],
+    );
+    let line = only(&place, &["replay", "quads", "--adapter", "nonsuch"]);
+    assert_parts(&line, &["nonsuch", "triptych doctor"]);
+    place.write("corpus/raster/empty/note.txt", "");
+    assert_parts(
+        &only(&place, &["list"]),
+        &["raster/empty/scene.toml", "missing"],
+    );
+}
+
+#[test]
+fn options_with_a_mistake() {
+    let place = Place::new("options");
+    for arguments in [
+        &["replay", "--leg", "nonsuch"][..],
+        &["replay", "--gpu-from", "nonsuch"],
+        &["replay", "--nonsuch"],
+        &["nonsuch"],
+        &["plan"],
+        &[],
+    ] {
+        let ran = place.run(arguments).expect(2);
+        assert_eq!(ran.stdout, "", "standard output of {arguments:?}");
+        assert!(ran.stderr.contains("--help"), "{}", ran.stderr);
+        assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
+    }
+    // The stages that may take over are those of the registry.
+    let ran = place.run(&["replay", "--gpu-from", "nonsuch"]);
+    let stages = triptych_harness::registry::stages().filter(|s| s.gpu_from.is_ok());
+    let stages: Vec<&str> = stages.map(|s| s.name).collect();
+    let listed = format!("[possible values: {}]", stages.join(", "));
+    assert!(
+        ran.stderr.contains(&listed),
+        "{} lacks {listed}",
+        ran.stderr
+    );
+}
+
+#[test]
+fn files_that_cannot_be_written_or_read() {
+    let place = Place::new("writing");
+    place
+        .write("corpus/raster/quads/scene.toml", SCENE)
+        .write("file", "")
+        .write("bad.json", "{\n");
+    let spec = |option: &str, value: &str| {
+        mistake(
+            &place,
+            &["replay", "--no-cache", "--leg", "spec", option, value],
+        )
+    };
+    assert_parts(&spec("--json", "file/out.json"), &["--json"]);
+    assert_parts(&spec("--dump", "file/dump"), &["file/dump"]);
+    assert_parts(&only(&place, &["report", "gone.json"]), &["gone.json"]);
+    assert_parts(&only(&place, &["report", "bad.json"]), &["bad.json:1: "]);
+}

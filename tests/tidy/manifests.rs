@@ -1,0 +1,130 @@
+//! Cargo.toml: what it pins, and which files it makes targets of.
+
+use toml::{Table, Value};
+
+use super::{assert_none, files, root};
+
+/// The workspace's members.
+const MEMBERS: [&str; 4] = ["gpu", "harness", "spec", "tests"];
+
+fn manifest(folder: &str) -> Table {
+    let path = root().join(folder).join("Cargo.toml");
+    let text = std::fs::read_to_string(&path).expect("a package has a Cargo.toml");
+    text.parse()
+        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// The crates' roots from the repository's, with `/`.
+pub fn targets() -> Vec<String> {
+    let mut targets = Vec::new();
+    for member in MEMBERS {
+        let manifest = manifest(member);
+        for kind in ["bin", "test", "bench", "example"] {
+            let all = manifest.get(kind).and_then(Value::as_array);
+            for target in all.into_iter().flatten() {
+                let path = target.get("path").and_then(Value::as_str);
+                let path = path.unwrap_or_else(|| panic!("{member}: a {kind} without path"));
+                targets.push(match path.strip_prefix("../") {
+                    Some(path) => path.to_owned(),
+                    None => format!("{member}/{path}"),
+                });
+            }
+        }
+        let library = format!("{member}/src/lib.rs");
+        targets.extend(root().join(&library).is_file().then_some(library));
+    }
+    targets
+}
+
+/// Where cargo would look for targets that no Cargo.toml names, there are none.
+#[test]
+fn targets_are_named() {
+    let targets = targets();
+    let mut violations = Vec::new();
+    for file in files() {
+        let parts: Vec<&str> = file.name.split('/').collect();
+        let found = match parts[..] {
+            ["tests", name] => name.ends_with(".rs"),
+            [_, "tests" | "benches" | "examples", name] => name.ends_with(".rs"),
+            _ => false,
+        };
+        if found && !targets.contains(&file.name) {
+            violations.push(format!("{}: no Cargo.toml names it", file.name));
+        }
+    }
+    assert_none(&violations);
+}
+
+#[test]
+fn members_are_known() {
+    let workspace = manifest("");
+    let members = workspace["workspace"]["members"]
+        .as_array()
+        .expect("a workspace");
+    let mut members: Vec<&str> = members.iter().filter_map(Value::as_str).collect();
+    members.sort_unstable();
+    assert_eq!(members, MEMBERS);
+}
+
+/// A version is exact and stands in one place.
+#[test]
+fn dependencies_are_pinned() {
+    let mut violations = Vec::new();
+    let workspace = manifest("");
+    let all = workspace["workspace"]["dependencies"]
+        .as_table()
+        .expect("a table");
+    for (name, given) in all {
+        let version = given
+            .as_str()
+            .or_else(|| given.get("version").and_then(Value::as_str));
+        let ours = given.get("path").is_some();
+        if !ours && !version.is_some_and(|v| v.starts_with('=')) {
+            violations.push(format!(
+                "Cargo.toml: {name} has {version:?}, not an exact version"
+            ));
+        }
+    }
+    for member in MEMBERS {
+        let manifest = manifest(member);
+        for kind in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            let given = manifest.get(kind).and_then(Value::as_table);
+            for (name, given) in given.into_iter().flatten() {
+                if given.get("workspace") != Some(&Value::Boolean(true)) {
+                    violations.push(format!(
+                        "{member}/Cargo.toml: {name} is not the workspace's"
+                    ));
+                }
+            }
+        }
+        let lints = manifest.get("lints").and_then(|l| l.get("workspace"));
+        if lints != Some(&Value::Boolean(true)) {
+            violations.push(format!(
+                "{member}/Cargo.toml: without the workspace's lints"
+            ));
+        }
+    }
+    assert_none(&violations);
+}
+
+/// Every dependency of the workspace is some member's, and so is used.
+#[test]
+fn dependencies_are_taken() {
+    let members: Vec<Table> = MEMBERS.iter().map(|m| manifest(m)).collect();
+    let workspace = manifest("");
+    let all = workspace["workspace"]["dependencies"]
+        .as_table()
+        .expect("a table");
+    let taken = |name: &str| {
+        let kinds = ["dependencies", "dev-dependencies", "build-dependencies"];
+        let tables = members
+            .iter()
+            .flat_map(|m| kinds.iter().filter_map(|k| m.get(*k)));
+        tables.into_iter().any(|table| table.get(name).is_some())
+    };
+    let unused = all.keys().filter(|name| !taken(name));
+    let unused: Vec<String> = unused
+        .map(|name| format!("Cargo.toml: no member takes {name}"))
+        .collect();
+    assert_none(&unused);
+}
