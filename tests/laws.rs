@@ -18,6 +18,8 @@
 mod abuffer;
 #[path = "laws/bound.rs"]
 mod bound;
+#[path = "laws/gpu.rs"]
+mod gpu;
 #[path = "laws/grid.rs"]
 mod grid;
 #[path = "laws/loose.rs"]

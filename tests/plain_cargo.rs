@@ -18,7 +18,8 @@ fn has(folder: &Path, start: &str) -> bool {
 }
 
 fn variable(name: &str) -> String {
-    std::env::var(name).unwrap_or_else(|_| panic!("{name} is not set; run ./x setup"))
+    std::env::var(name)
+        .unwrap_or_else(|_| panic!("{name} is not set; run ./x setup, and this by cargo"))
 }
 
 /// The linker found Embree, and so does the loader.

@@ -32,7 +32,12 @@ pub struct Layers {
 }
 
 fn layers(count: std::ops::Range<usize>) -> impl Strategy<Value = Layers> {
-    soup(count).prop_flat_map(|primitives| {
+    coloured(soup(count))
+}
+
+/// The same from given triangles.
+pub fn coloured(soup: impl Strategy<Value = Primitives>) -> impl Strategy<Value = Layers> {
+    soup.prop_flat_map(|primitives| {
         let n = primitives.prims.len();
         let colour = (0_f32..2.0, 0_f32..2.0, 0_f32..2.0, opacity());
         let colours = prop::collection::vec(colour.prop_map(|(r, g, b, a)| [r, g, b, a]), n);

@@ -77,10 +77,15 @@ fn whole_guard(size: Size, bits: u32) -> impl Strategy<Value = Triangle> {
     })
 }
 
-/// Triangles of any kind.
+/// Triangles of any kind, on a grid of any fineness.
 pub fn soup(count: std::ops::Range<usize>) -> impl Strategy<Value = Primitives> {
-    (size(), 1_u32..=8, count).prop_flat_map(|(size, bits, count)| {
-        prop::collection::vec(triangle(size, bits), count)
+    (1_u32..=8).prop_flat_map(move |bits| soup_on(bits, count.clone()))
+}
+
+/// Triangles of any kind on a grid of so many sub-pixel bits.
+pub fn soup_on(bits: u32, count: std::ops::Range<usize>) -> impl Strategy<Value = Primitives> {
+    size().prop_flat_map(move |size| {
+        prop::collection::vec(triangle(size, bits), count.clone())
             .prop_map(move |triangles| primitives(size, bits, &triangles))
     })
 }

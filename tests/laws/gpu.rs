@@ -1,0 +1,107 @@
+//! Random triangles through every adapter and path: each stage equals the spec's.
+
+use std::sync::OnceLock;
+
+use proptest::prelude::*;
+use triptych_gpu::raster::Path;
+use triptych_harness::observe::Observed;
+use triptych_harness::plan::Plan;
+use triptych_harness::replay::gpu::{Adapter, From, GpuLeg};
+use triptych_harness::replay::rows::Rows;
+use triptych_harness::replay::spec::SpecRun;
+use triptych_harness::row::Verdict;
+use triptych_spec::vertex::{GUARD, guard_origin};
+
+use super::abuffer::{Layers, coloured};
+use super::config;
+use super::grid::soup_on;
+
+/// Opened once: that takes longer than all that they are asked.
+fn adapters() -> &'static [Adapter] {
+    static ADAPTERS: OnceLock<Vec<Adapter>> = OnceLock::new();
+    ADAPTERS.get_or_init(|| {
+        let adapters = Adapter::open_all(&[]).unwrap_or_else(|e| panic!("{e}"));
+        assert!(
+            !adapters.is_empty(),
+            "no adapter; `triptych doctor` says what is missing"
+        );
+        adapters
+    })
+}
+
+/// Layers on one of the grids that drivers have. Nothing reaches beyond the guard, as
+/// no stage before would let it.
+fn layers() -> impl Strategy<Value = Layers> {
+    let grids = adapters().iter().map(|a| a.bits(Path::Fragment));
+    let soup = prop::sample::select(grids.collect::<Vec<_>>());
+    let soup = soup.prop_flat_map(|bits| soup_on(bits, 1..24));
+    let soup = soup.prop_map(|mut soup| {
+        let bits = soup.bits;
+        let low = [soup.size.width, soup.size.height].map(|side| guard_origin(side) << bits);
+        for corner in &mut soup.snapped {
+            for (at, low) in corner.iter_mut().zip(low) {
+                *at = (*at).clamp(low, low + (GUARD << bits));
+            }
+        }
+        soup
+    });
+    coloured(soup)
+}
+
+/// Runs all stages and compares each.
+fn agrees(layers: &Layers, adapter: &Adapter, path: Path, skip: bool) -> Result<(), TestCaseError> {
+    if path == Path::Native && adapter.native.is_none() {
+        return Ok(());
+    }
+    let plan = Plan::new(&layers.scene, skip);
+    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
+    let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
+    let leg = GpuLeg {
+        adapter,
+        path,
+        scene: &layers.scene,
+        spec: &spec,
+        plan: &plan,
+        // The first attempt overflows, unless there is next to nothing.
+        capacity: Some(spec.value.lists.attempts / 2),
+        from: From::Cover,
+    };
+    let mut rows = Rows::new("law", "abuffer");
+    leg.run(&mut rows)
+        .map_err(|e| TestCaseError::fail(e.to_string()))?;
+    let words = || rows.described.join("\n");
+    for row in &rows.rows {
+        // Triangles at random may cover nothing.
+        let nothing = row.compared == 0 && row.differ == 0;
+        let verdict = if nothing {
+            Verdict::Skipped
+        } else {
+            row.verdict()
+        };
+        prop_assert_ne!(verdict, Verdict::Diverge, "{:?}\n{}", row, words());
+    }
+    let compared = |stage: &str| rows.rows.iter().any(|r| r.stage == stage && r.compared > 0);
+    prop_assert!(compared("resolve"), "nothing was compared");
+    prop_assert!(
+        skip || compared("cover") || spec.value.cover.is_empty(),
+        "no fragments were"
+    );
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(24))]
+
+    /// From the same triangles, every adapter and path has the spec's fragments,
+    /// surfaces, lists and order to the bit, and its picture inside the bound.
+    #[test]
+    fn random_triangles(layers in layers(), skip in any::<bool>()) {
+        for adapter in adapters() {
+            for path in [Path::Compute, Path::Fragment, Path::Native] {
+                if path != Path::Fragment || adapter.bits(path) == layers.primitives.bits {
+                    agrees(&layers, adapter, path, skip)?;
+                }
+            }
+        }
+    }
+}
