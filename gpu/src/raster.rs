@@ -1,8 +1,11 @@
 //! Raster stage on the device: triangles in, fragments out, on two paths.
 
+mod capacity;
+mod cover;
+mod work;
+
 use std::time::{Duration, Instant};
 
-use triptych_spec::raster::Fragment;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{GUARD, Primitives, guard_origin};
 
@@ -10,6 +13,10 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::kernel::{Kernel, Kernels, Pipeline, TARGET_FORMAT};
+pub use capacity::{Next, SATURATED, after, first_capacity, nodes_max};
+pub use cover::{Covered, cover};
+pub use work::Work;
+use work::sampled_rows;
 
 /// Who decides coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,13 +40,6 @@ impl Path {
     }
 }
 
-/// Past this many claims a counter no longer counts. Twin: `SATURATED` in
-/// `counter.wgsl`.
-pub const SATURATED: u32 = 0x8000_0000;
-
-/// Most rows of triangles that one dispatch walks (WebGPU: 65,535 workgroups).
-const ITEMS_MAX: u32 = 65_535 * WORKGROUP;
-
 /// Triangles on the device.
 pub struct Rasterizer<'g> {
     /// The device.
@@ -57,18 +57,6 @@ pub struct Rasterizer<'g> {
     /// First and last row with a sample, of each triangle that has any.
     rows: Vec<Option<[i64; 2]>>,
     target: wgpu::TextureView,
-}
-
-/// A work list and its batches.
-pub struct Work {
-    buffer: wgpu::Buffer,
-    batches: Vec<Batch>,
-}
-
-struct Batch {
-    first: u32,
-    count: u32,
-    items: u32,
 }
 
 impl<'g> Rasterizer<'g> {
@@ -100,47 +88,6 @@ impl<'g> Rasterizer<'g> {
             corners: gpu.upload("corners", &corners)?,
             faces: gpu.upload("faces", faces)?,
             target: target(gpu, primitives.size),
-        })
-    }
-
-    /// The triangles that `select` picks, as far as they meet a band.
-    ///
-    /// # Errors
-    /// More triangles than the adapter can bind.
-    pub fn work(&self, band: Band, select: impl Fn(u32) -> bool) -> Result<Work, GpuError> {
-        let mut list: Vec<[u32; 2]> = Vec::new();
-        let mut batches = Vec::new();
-        let mut batch = Batch {
-            first: 0,
-            count: 0,
-            items: 0,
-        };
-        for (prim, rows) in (0..).zip(&self.rows) {
-            let rows = rows.map_or(0, |rows| rows_within(rows, band));
-            if rows == 0 || !select(prim) {
-                continue;
-            }
-            if batch.items + rows > ITEMS_MAX {
-                let first = batch.first + batch.count;
-                batches.push(std::mem::replace(
-                    &mut batch,
-                    Batch {
-                        first,
-                        count: 0,
-                        items: 0,
-                    },
-                ));
-            }
-            list.push([prim, batch.items]);
-            batch.count += 1;
-            batch.items += rows;
-        }
-        if batch.count > 0 {
-            batches.push(batch);
-        }
-        Ok(Work {
-            buffer: self.gpu.upload("work", &list)?,
-            batches,
         })
     }
 
@@ -252,126 +199,6 @@ pub fn per_pixel(
     let start = Instant::now();
     gpu.submit(encoder)?;
     Ok(start.elapsed())
-}
-
-/// What stage `cover` gave.
-pub struct Covered {
-    /// Fragments in no particular order.
-    pub fragments: Vec<Fragment>,
-    /// Time on the device, without transfers.
-    pub time: Duration,
-}
-
-/// Stage `cover`: every covered pixel of every triangle.
-///
-/// # Errors
-/// Limits by name, WGSL errors, and whatever the device reports.
-pub fn cover(rasterizer: &Rasterizer<'_>) -> Result<Covered, GpuError> {
-    let mut covered = Covered {
-        fragments: Vec::new(),
-        time: Duration::ZERO,
-    };
-    let size = rasterizer.size;
-    let mut capacity = first_capacity(size).min(nodes_max(rasterizer.gpu));
-    let mut bands = vec![Band::whole(size)];
-    while let Some(band) = bands.pop() {
-        let gpu = rasterizer.gpu;
-        let counter = gpu.filled("counter", 1, 0)?;
-        let stream = gpu.storage("stream", 16 * u64::from(capacity))?;
-        let work = rasterizer.work(band, |_| true)?;
-        let frame = Frame {
-            capacity,
-            ..rasterizer.frame(band)
-        };
-        let buffers = [("counter", &counter), ("stream", &stream)];
-        let time = rasterizer.draw("raster", "cover", frame, &work, &buffers)?;
-        let attempts = gpu.read::<u32>(&counter, 1)?[0];
-        match after(gpu, "cover", band, attempts, capacity)? {
-            Next::Done => {
-                covered.time += time;
-                let first = band.first * size.width;
-                let stored = gpu.read::<[u32; 4]>(&stream, attempts as usize)?;
-                let fragments = stored.into_iter().map(|[pixel, prim, key, mask]| Fragment {
-                    pixel: pixel + first,
-                    prim,
-                    key,
-                    mask,
-                });
-                covered.fragments.extend(fragments);
-            }
-            Next::Resize(exact) => {
-                capacity = exact;
-                bands.push(band);
-            }
-            Next::Split([upper, lower]) => bands.extend([lower, upper]),
-        }
-    }
-    Ok(covered)
-}
-
-/// Room for two fragments a pixel: enough for most scenes at the first attempt.
-pub fn first_capacity(size: Size) -> u32 {
-    2 * size.width * size.height
-}
-
-/// The most nodes of 16 bytes that the adapter can bind.
-pub fn nodes_max(gpu: &Gpu) -> u32 {
-    u32::try_from(gpu.binding_limit() / 16).unwrap_or(u32::MAX)
-}
-
-/// What to do after an attempt with some capacity.
-pub enum Next {
-    /// Everything fitted.
-    Done,
-    /// Again, with exactly this much room.
-    Resize(u32),
-    /// The adapter has no such buffer: again in two parts.
-    Split([Band; 2]),
-}
-
-/// Overflow is detected by the counter and cured by size, or by halves where the
-/// adapter cannot bind so much (section 3.3: "detect when overflow happens and
-/// resize the node buffer as needed").
-///
-/// # Errors
-/// [`GpuError::Limit`] if even a single row does not fit.
-pub fn after(
-    gpu: &Gpu,
-    what: &'static str,
-    band: Band,
-    attempts: u32,
-    capacity: u32,
-) -> Result<Next, GpuError> {
-    let most = nodes_max(gpu);
-    if attempts <= capacity {
-        return Ok(Next::Done);
-    }
-    if attempts < SATURATED && attempts <= most {
-        return Ok(Next::Resize(attempts));
-    }
-    band.halves().map(Next::Split).ok_or(GpuError::Limit {
-        adapter: gpu.name.clone(),
-        what,
-        needed: u64::from(attempts),
-        limit: u64::from(most),
-    })
-}
-
-/// First and last row whose samples lie within a triangle's height; `None` if it
-/// has none. This only shares out work: which of the samples are covered is decided
-/// on the device.
-fn sampled_rows(corners: &[[i32; 3]; 3], bits: u32) -> Option<[i64; 2]> {
-    let y = corners.map(|c| i64::from(c[1]));
-    let half = 1_i64 << (bits - 1);
-    let top = -((half - y[0].min(y[1]).min(y[2])) >> bits);
-    let bottom = (y[0].max(y[1]).max(y[2]) - half) >> bits;
-    (top <= bottom).then_some([top, bottom])
-}
-
-fn rows_within([top, bottom]: [i64; 2], band: Band) -> u32 {
-    let top = top.max(i64::from(band.first));
-    let bottom = bottom.min(i64::from(band.first + band.rows) - 1);
-    u32::try_from(bottom - top + 1).unwrap_or(0)
 }
 
 pub(crate) fn uniform(gpu: &Gpu, frame: &Frame) -> wgpu::Buffer {

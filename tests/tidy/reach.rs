@@ -147,10 +147,11 @@ fn every_folder_is_in_the_architecture() {
     let page = std::fs::read_to_string(page).expect("there is an ARCHITECTURE.md");
     let mut violations = BTreeSet::new();
     for file in files() {
-        if let Some((folder, _)) = file.name.split_once('/') {
-            if !folder.starts_with('.') && !page.contains(&format!("{folder}/")) {
-                violations.insert(format!("{folder}/ is not in ARCHITECTURE.md"));
-            }
+        if let Some((folder, _)) = file.name.split_once('/')
+            && !folder.starts_with('.')
+            && !page.contains(&format!("{folder}/"))
+        {
+            violations.insert(format!("{folder}/ is not in ARCHITECTURE.md"));
         }
     }
     assert_none(&violations.into_iter().collect::<Vec<_>>());

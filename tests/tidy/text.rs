@@ -100,7 +100,7 @@ fn functions(text: &str) -> Vec<(usize, &str, usize)> {
             }
             None => false,
         };
-        let last = lines[first..].iter().position(|l| ends(l));
+        let last = lines[first..].iter().position(ends);
         functions.push((first + 1, name, last.unwrap_or(lines.len() - first) + 1));
     }
     functions

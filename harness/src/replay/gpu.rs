@@ -1,98 +1,29 @@
 //! A GPU leg: one adapter, one path, every stage from equal inputs.
 
+mod judge;
+mod lists;
+
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 use triptych_gpu::abuffer::{self, Abuffer, Given};
-use triptych_gpu::context::{Gpu, adapters, short_name};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::frame::Band;
-use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::{self, Path, Rasterizer};
-use triptych_gpu::wgsl::Sources;
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::scene::Scene;
 
+pub use super::adapter::Adapter;
 use super::rows::Rows;
 use super::spec::SpecRun;
-use crate::calibrate::{Grid, calibrate};
+use crate::calibrate::Grid;
 use crate::compare::fragments::Rule;
-use crate::compare::lists::{Expected, certify, compare_overflowed};
-use crate::compare::{self, Judgement, compare};
+use crate::compare::lists::{Expected, certify};
+use crate::compare::{self, compare};
 use crate::observe::{self, Observed};
 use crate::plan::Plan;
 use crate::row::Class;
-
-/// A device, its kernels, and its driver's sub-pixel grid.
-pub struct Adapter {
-    /// The device.
-    pub gpu: Gpu,
-    /// Kernels in baseline WGSL.
-    pub kernels: Kernels,
-    /// Kernels that use 64-bit integers, where the adapter has them.
-    pub native: Option<Kernels>,
-    /// What calibration found.
-    pub grid: Grid,
-}
-
-impl Adapter {
-    /// Opens and calibrates the adapters whose name contains one of `wanted` (all,
-    /// if that is empty), in order of name. Adapters of the GL back end are taken
-    /// only if asked for: naga's GLSL has no sample masks.
-    ///
-    /// # Errors
-    /// The first adapter that cannot be opened.
-    pub fn open_all(wanted: &[String]) -> Result<Vec<Self>, GpuError> {
-        let asked = |name: &str| {
-            wanted
-                .iter()
-                .any(|w| name.to_lowercase().contains(&w.to_lowercase()))
-        };
-        let backends = if wanted.iter().any(|w| w.to_lowercase().ends_with("gl")) {
-            wgpu::Backends::all()
-        } else {
-            wgpu::Backends::all() - wgpu::Backends::GL
-        };
-        let mut found: Vec<_> = adapters(backends)
-            .into_iter()
-            .map(|a| (short_name(&a.get_info()), a))
-            .filter(|(name, _)| wanted.is_empty() || asked(name))
-            .collect();
-        found.sort_by(|a, b| a.0.cmp(&b.0));
-        found.dedup_by(|a, b| a.0 == b.0);
-        found
-            .iter()
-            .map(|(_, adapter)| Self::open(adapter))
-            .collect()
-    }
-
-    /// Opens and calibrates one adapter.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let gpu = Gpu::open(adapter)?;
-        let kernels = Kernels::new(Sources::shipped(false));
-        let native = gpu
-            .has_int64()
-            .then(|| Kernels::new(Sources::shipped(true)));
-        let grid = calibrate(&gpu, &kernels)?;
-        Ok(Self {
-            gpu,
-            kernels,
-            native,
-            grid,
-        })
-    }
-
-    /// The grid on which a path works: compute kernels take any.
-    pub fn bits(&self, path: Path) -> u32 {
-        match path {
-            Path::Compute | Path::Native => triptych_spec::vertex::SUBPIXEL_BITS,
-            Path::Fragment => self.grid.bits(),
-        }
-    }
-}
+use lists::{join, relink};
 
 /// From which stage on the GPU's own results are used; before it, the spec's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -266,128 +197,6 @@ impl GpuLeg<'_> {
         }
     }
 
-    fn judge_opaque(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
-        if let Some(reason) = self.reason_not_run("opaque", From::Cover) {
-            rows.skip(
-                "opaque",
-                &self.spec.label,
-                &seen.label,
-                Class::Exact,
-                reason,
-            );
-            return;
-        }
-        let spec = self
-            .spec
-            .map(|s| &s.opaque)
-            .taking(self.spec.value.times.opaque);
-        let times = seen.value.abuffer.times;
-        let gpu = seen.map(|s| &s.abuffer.opaque).taking(times.opaque);
-        let width = self.scene.size.width;
-        let judgement = compare(&spec, &gpu, |a, b| compare::opaque::compare(a, b, width));
-        rows.add("opaque", &spec, &gpu, judgement);
-    }
-
-    fn judge_lists(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
-        if let Some(reason) = self.reason_not_run("build", From::Cover) {
-            rows.skip(
-                "build",
-                &self.spec.label,
-                &seen.label,
-                Class::Structure,
-                reason,
-            );
-            return;
-        }
-        let spec = self
-            .spec
-            .map(|s| &s.sorted)
-            .taking(self.spec.value.times.build);
-        let gpu = seen
-            .map(|s| &s.abuffer)
-            .taking(seen.value.abuffer.times.build);
-        if !gpu.value.overflowed.is_empty() {
-            let judgement = compare(&spec, &gpu, |spec, gpu| {
-                let judge = |(band, lists): &(Band, Lists)| {
-                    compare_overflowed(&self.expected(spec, *band), lists)
-                };
-                Judgement::sum(gpu.overflowed.iter().map(judge))
-            });
-            rows.add("overflow", &spec, &gpu, judgement);
-        }
-        let judgement = compare(&spec, &gpu, |spec, gpu| {
-            let judge = |b: &abuffer::BandResult| {
-                compare::lists::compare(&self.expected(spec, b.band), &b.built)
-            };
-            Judgement::sum(gpu.bands.iter().map(judge))
-        });
-        rows.add("build", &spec, &gpu, judgement);
-    }
-
-    fn judge_sort(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
-        if let Some(reason) = self.reason_not_run("sort", From::Sort) {
-            rows.skip("sort", &self.spec.label, &seen.label, Class::Tie, reason);
-            return;
-        }
-        if seen.value.abuffer.bands.iter().any(|b| b.sorted.is_none()) {
-            let reason = "the lists are damaged, see build".to_owned();
-            rows.skip("sort", &self.spec.label, &seen.label, Class::Tie, reason);
-            return;
-        }
-        // From equal inputs: the spec sorts what this leg built.
-        let sorted = |b: &abuffer::BandResult| triptych_spec::abuffer::sort(&b.built);
-        let must: Vec<Sorted> = seen.value.abuffer.bands.iter().map(sorted).collect();
-        let spec = self.spec.derive(must).taking(self.spec.value.times.sort);
-        let gpu = seen
-            .map(|s| &s.abuffer.bands)
-            .taking(seen.value.abuffer.times.sort);
-        let width = self.scene.size.width;
-        let judgement = compare(&spec, &gpu, |must, bands| {
-            Judgement::sum(must.iter().zip(bands.iter()).map(|(must, band)| {
-                let flat = band.sorted.as_ref().and_then(compare::order::flatten);
-                compare::order::compare(must, flat.as_ref(), width)
-            }))
-        });
-        rows.add("sort", &spec, &gpu, judgement);
-    }
-
-    fn judge_resolve(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
-        let Some(sorted) = &seen.value.sorted else {
-            let reason = "the lists are damaged, see build".to_owned();
-            rows.skip(
-                "resolve",
-                &self.spec.label,
-                &seen.label,
-                Class::Interval,
-                reason,
-            );
-            return;
-        };
-        // From equal inputs: the spec blends what this leg sorted.
-        let spec = &self.spec.value;
-        let abuffer = &seen.value.abuffer;
-        let must = if *sorted == spec.sorted && abuffer.opaque == spec.opaque {
-            spec.image.clone()
-        } else {
-            let prims = &spec.primitives;
-            triptych_spec::abuffer::resolve(self.scene, prims, &abuffer.opaque, sorted)
-        };
-        let spec = self.spec.derive(must).taking(spec.times.resolve);
-        let gpu = seen.map(|s| &s.abuffer.image).taking(abuffer.times.resolve);
-        let width = self.scene.size.width;
-        let judgement = compare(&spec, &gpu, |a, b| compare::image::compare(a, b, width));
-        rows.add("resolve", &spec, &gpu, judgement);
-    }
-
-    /// Why a stage has nothing of its own to compare: the plan leaves it out, or the
-    /// spec's result stands in for it.
-    fn reason_not_run(&self, stage: &str, first: From) -> Option<String> {
-        let given = self.from > first;
-        self.plan
-            .skipped(stage)
-            .or(given.then(|| "the spec's result is used (--gpu-from)".into()))
-    }
-
     /// What the spec says about a band.
     pub fn expected<'e>(&'e self, sorted: &'e Sorted, band: Band) -> Expected<'e> {
         let width = self.scene.size.width;
@@ -399,61 +208,4 @@ impl GpuLeg<'_> {
             width,
         }
     }
-}
-
-/// The spec's lists with links in sorted order.
-fn relink(spec: &SpecRun) -> Lists {
-    use triptych_spec::abuffer::{EOL, Node};
-    let (sorted, faces) = (&spec.sorted, &spec.faces);
-    let mut lists = Lists {
-        heads: Vec::with_capacity(spec.lists.heads.len()),
-        nodes: Vec::with_capacity(sorted.fragments.len()),
-        colours: sorted
-            .fragments
-            .iter()
-            .map(|f| faces[f.prim as usize])
-            .collect(),
-        ..spec.lists.clone()
-    };
-    for range in sorted.offsets.windows(2) {
-        lists
-            .heads
-            .push(if range[0] < range[1] { range[0] } else { EOL });
-        for address in range[0]..range[1] {
-            let f = sorted.fragments[address as usize];
-            let next = if address + 1 < range[1] {
-                address + 1
-            } else {
-                EOL
-            };
-            lists.nodes.push(Node {
-                key: f.key,
-                next,
-                prim: f.prim,
-                mask: f.mask,
-            });
-        }
-    }
-    lists
-}
-
-/// The bands' sorted lists as one, with pixels counted from the target's first.
-fn join(abuffer: &Abuffer, width: u32) -> Option<Sorted> {
-    let mut all = Sorted {
-        offsets: vec![0],
-        fragments: Vec::new(),
-    };
-    for band in &abuffer.bands {
-        let flat = compare::order::flatten(band.sorted.as_ref()?)?;
-        let start = *all.offsets.last()?;
-        all.offsets
-            .extend(flat.offsets[1..].iter().map(|o| start + o));
-        let first = band.band.first * width;
-        all.fragments
-            .extend(flat.fragments.into_iter().map(|mut f| {
-                f.pixel += first;
-                f
-            }));
-    }
-    Some(all)
 }

@@ -1,0 +1,167 @@
+//! The GPU legs of one scene: every adapter and path.
+
+use triptych_gpu::error::GpuError;
+use triptych_gpu::raster::Path;
+
+use super::gpu::{Adapter, From, GpuLeg};
+use super::run::{Run, Stop};
+use super::spec::SpecRun;
+use super::{pictures, skips, vertex};
+use crate::cause::Cause;
+use crate::observe::{Observed, Spec};
+use crate::row::Class;
+use crate::scene::value::Capacity;
+
+impl Run<'_> {
+    /// Every adapter and path; legs that share a sub-pixel grid follow each other.
+    pub(super) fn gpu(&mut self) -> Result<(), Stop> {
+        if self.adapters.is_empty() {
+            let reason = "no adapter; `triptych doctor` says what is missing".to_owned();
+            self.rows.skip("all", "spec", "gpu", Class::Exact, reason);
+            return Ok(());
+        }
+        let legs = self
+            .adapters
+            .iter()
+            .flat_map(|adapter| self.options.paths.iter().map(move |path| (adapter, *path)));
+        let mut legs: Vec<(&Adapter, Path)> = legs.collect();
+        legs.sort_by_key(|(adapter, path)| std::cmp::Reverse(adapter.bits(*path)));
+        for (adapter, path) in legs {
+            let wgpu::AdapterInfo {
+                name,
+                driver,
+                driver_info,
+                ..
+            } = &adapter.gpu.info;
+            let bits = adapter.bits(path).to_string();
+            let measures = self.measures_skips(adapter, path).to_string();
+            let grid = format!("{:?}", adapter.grid);
+            let inputs = [
+                name,
+                driver,
+                driver_info,
+                path.name(),
+                &bits,
+                &grid,
+                &measures,
+            ];
+            self.unit(&inputs, |run| run.leg(adapter, path))?;
+        }
+        Ok(())
+    }
+
+    fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
+        if path == Path::Native && adapter.native.is_none() {
+            let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+            let reason = "no 64-bit integers: compute takes its place".to_owned();
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+            return Ok(());
+        }
+        let spec = self.spec(adapter.bits(path))?;
+        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        match self.leg_or_error(&spec, adapter, path) {
+            Ok(stop) => stop,
+            Err(error @ GpuError::Limit { .. }) => {
+                self.rows
+                    .skip("leg", "spec", &label, Class::Exact, error.to_string());
+                Ok(())
+            }
+            Err(error) => {
+                let cause = match error {
+                    GpuError::Lost { .. } => Some(Cause::DeviceLost),
+                    GpuError::Endless { .. } => Some(Cause::Cycle),
+                    _ => None,
+                };
+                self.rows
+                    .fail("leg", "spec", &label, cause, error.to_string());
+                Ok(())
+            }
+        }
+    }
+
+    fn leg_or_error(
+        &mut self,
+        spec: &Observed<Spec, SpecRun>,
+        adapter: &Adapter,
+        path: Path,
+    ) -> Result<Result<(), Stop>, GpuError> {
+        let (scene, plan) = (&self.loaded.scene, self.plan.clone());
+        let own = self.vertices(spec, adapter, path)?;
+        // End to end, the later stages of both legs start from the GPU's vertices.
+        let moved = match own {
+            Some(primitives) => match SpecRun::new(scene, primitives, &self.plan) {
+                Ok(run) => Some(Observed::new("spec", run)),
+                Err(message) => return Ok(Err(Stop::Input(message))),
+            },
+            None => None,
+        };
+        let from_own = self.options.from == From::Transform;
+        let leg = GpuLeg {
+            adapter,
+            path,
+            scene,
+            spec: moved.as_ref().filter(|_| from_own).unwrap_or(spec),
+            plan: &plan,
+            capacity: self.capacity(&spec.value),
+            from: self.options.from,
+        };
+        let seen = leg.run(&mut self.rows)?;
+        if let Some(moved) = moved.as_ref().filter(|_| !from_own) {
+            vertex::end_to_end(&GpuLeg { spec: moved, ..leg }, spec, &mut self.rows)?;
+        }
+        if self.options.skip && self.measures_skips(adapter, path) {
+            self.saved_ms = skips::run(&leg, &seen, &mut self.rows)?;
+        }
+        if self.options.pictures && seen.value.sorted.is_some() {
+            let image = &seen.value.abuffer.image;
+            self.pictures
+                .push(pictures::leg(&seen.label, scene.size, image));
+        }
+        Ok(self.dump_gpu(&leg.spec.value, &seen).map_err(Stop::Dump))
+    }
+
+    /// The GPU's own vertex stage, compared with the spec's. It is the same for both
+    /// paths, so it is judged on the compute path, which takes the finest grid; its
+    /// triangles are given back where they are wanted and differ.
+    fn vertices(
+        &mut self,
+        spec: &Observed<Spec, SpecRun>,
+        adapter: &Adapter,
+        path: Path,
+    ) -> Result<Option<triptych_spec::vertex::Primitives>, GpuError> {
+        let only_path = self.options.paths.len() == 1;
+        let judged = path == Path::Compute || only_path;
+        if !judged && self.options.from != From::Transform {
+            return Ok(None);
+        }
+        vertex::run(
+            &self.loaded.scene,
+            spec,
+            adapter,
+            path,
+            judged.then_some(&mut self.rows),
+        )
+    }
+
+    /// Skipping is measured once a scene, on the last adapter's compute path.
+    fn measures_skips(&self, adapter: &Adapter, path: Path) -> bool {
+        let last = self
+            .adapters
+            .last()
+            .is_some_and(|a| std::ptr::eq(a, adapter));
+        let wanted = self
+            .options
+            .paths
+            .iter()
+            .filter(|p| **p != Path::Native)
+            .max();
+        last && wanted == Some(&path) && self.options.from == From::Cover
+    }
+
+    fn capacity(&self, spec: &SpecRun) -> Option<u32> {
+        match self.loaded.file.abuffer.capacity {
+            Capacity::All => None,
+            stated => Some(stated.nodes(spec.lists.attempts)),
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! One scene under way.
+
+use std::rc::Rc;
+
+use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
+
+use super::facts::Facts;
+use super::gpu::Adapter;
+use super::rows::Rows;
+use super::spec::{SpecRun, timed};
+use super::{Options, Outcome, embree, pictures};
+use crate::cache::Unit;
+use crate::compare::{Judgement, compare};
+use crate::observe::{Analytic, Observed, Spec};
+use crate::plan::Plan;
+use crate::report::Picture;
+use crate::row::Row;
+use crate::scene::{Loaded, expect};
+
+/// Why a replay ends early.
+pub(super) enum Stop {
+    /// Bad input.
+    Input(String),
+    /// A dump that cannot be written.
+    Dump(std::io::Error),
+}
+
+impl From<std::io::Error> for Stop {
+    fn from(error: std::io::Error) -> Self {
+        Self::Dump(error)
+    }
+}
+
+/// One scene under way.
+pub(super) struct Run<'a> {
+    pub(super) loaded: &'a Loaded,
+    pub(super) adapters: &'a [Adapter],
+    pub(super) options: &'a Options,
+    pub(super) plan: Plan,
+    /// The spec's results on the grid that was asked for last.
+    spec: Option<Rc<Observed<Spec, SpecRun>>>,
+    pub(super) rows: Rows,
+    pub(super) pictures: Vec<Picture>,
+    pub(super) saved_ms: Option<f64>,
+    facts: Option<Facts>,
+    remarks: Vec<String>,
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(loaded: &'a Loaded, adapters: &'a [Adapter], options: &'a Options) -> Self {
+        Self {
+            loaded,
+            adapters,
+            options,
+            plan: Plan::new(&loaded.scene, options.skip),
+            spec: None,
+            rows: Rows::new(&loaded.name, &loaded.family),
+            pictures: Vec::new(),
+            saved_ms: None,
+            facts: None,
+            remarks: Vec::new(),
+        }
+    }
+
+    pub(super) fn all(mut self) -> Result<Outcome, Stop> {
+        self.unit(&["spec"], Self::spec_alone)?;
+        if self.options.embree {
+            self.unit(&["embree"], Self::embree)?;
+        }
+        if self.options.gpu {
+            self.gpu()?;
+        }
+        let causes = pictures::causes(self.spec.as_deref(), &self.rows.marks);
+        self.pictures
+            .extend(causes.filter(|_| self.options.pictures));
+        self.rows.rows.sort_by_key(column);
+        Ok(Outcome {
+            name: self.loaded.name.clone(),
+            purpose: self.loaded.file.purpose.0.clone(),
+            size: Some(self.loaded.scene.size),
+            rows: self.rows.rows,
+            described: self.rows.described,
+            marks: self.rows.marks,
+            plan: Some(self.plan),
+            saved_ms: self.saved_ms,
+            facts: self.facts,
+            pictures: self.pictures,
+            remarks: self.remarks,
+        })
+    }
+
+    /// Does a piece of work, or takes its result from the cache. `inputs` are what it
+    /// depends on beside the scene, the options and the code.
+    pub(super) fn unit(
+        &mut self,
+        inputs: &[&str],
+        work: impl FnOnce(&mut Self) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        let Some(cache) = self
+            .options
+            .cache
+            .as_ref()
+            .filter(|_| self.options.dump.is_none())
+        else {
+            return work(self);
+        };
+        let Options {
+            from,
+            skip,
+            paths,
+            pictures,
+            ..
+        } = self.options;
+        let options = format!("{from:?} {skip} {paths:?} {pictures}");
+        let mut all = vec![
+            self.loaded.name.as_str(),
+            &self.loaded.stats.sha256,
+            &options,
+        ];
+        all.extend(inputs);
+        let key = cache.key(&all);
+        if let Some(unit) = cache.get(&key) {
+            self.rows.rows.extend(unit.rows);
+            self.pictures.extend(unit.pictures);
+            self.saved_ms = self.saved_ms.or(unit.saved_ms);
+            return Ok(());
+        }
+        let (rows, pictures) = (self.rows.rows.len(), self.pictures.len());
+        let saved_ms = self.saved_ms.take();
+        work(self)?;
+        let unit = Unit {
+            rows: self.rows.rows[rows..].to_vec(),
+            pictures: self.pictures[pictures..].to_vec(),
+            saved_ms: self.saved_ms,
+        };
+        self.saved_ms = self.saved_ms.or(saved_ms);
+        if let Err(error) = cache.put(&key, &unit) {
+            self.remarks.push(format!("cache: {error}"));
+        }
+        Ok(())
+    }
+
+    /// The spec's results on a grid, computed when first asked for. Only the last
+    /// grid's are held: they are large.
+    pub(super) fn spec(&mut self, bits: u32) -> Result<Rc<Observed<Spec, SpecRun>>, Stop> {
+        if let Some(spec) = self
+            .spec
+            .as_ref()
+            .filter(|s| s.value.primitives.bits == bits)
+        {
+            return Ok(spec.clone());
+        }
+        self.spec = None;
+        let scene = &self.loaded.scene;
+        let (primitives, vertex) = timed(|| primitives(scene, bits));
+        let mut run = SpecRun::new(scene, primitives, &self.plan).map_err(Stop::Input)?;
+        run.times.vertex = vertex;
+        let spec = Rc::new(Observed::new("spec", run));
+        self.spec = Some(spec.clone());
+        Ok(spec)
+    }
+
+    /// What needs no other leg.
+    fn spec_alone(&mut self) -> Result<(), Stop> {
+        let spec = self.spec(SUBPIXEL_BITS)?;
+        self.analytic(&spec);
+        self.facts = Some(Facts::new(self.loaded, &spec.value, &self.plan));
+        if self.options.pictures {
+            self.pictures.extend(pictures::spec(&spec.value));
+        }
+        self.dump_spec(&spec).map_err(Stop::Dump)
+    }
+
+    /// Holds the spec against what the scene's author worked out by hand.
+    fn analytic(&mut self, spec: &Observed<Spec, SpecRun>) {
+        let stated = &self.loaded.file.expect;
+        let count = stated.stated();
+        if count == 0 {
+            return;
+        }
+        let analytic = Observed::<Analytic, _>::new("closed form", stated);
+        let judgement = compare(spec, &analytic, |spec, stated| {
+            let SpecRun {
+                primitives,
+                opaque,
+                sorted,
+                ..
+            } = spec;
+            let scene = &self.loaded.scene;
+            let wrong = expect::check(stated, scene, primitives, opaque, sorted);
+            let mut judgement = Judgement::exact("statements", count, wrong.len() as u64);
+            judgement.described = wrong;
+            judgement
+        });
+        self.rows.add("expect", spec, &analytic, judgement);
+    }
+
+    fn embree(&mut self) -> Result<(), Stop> {
+        let spec = self.spec(SUBPIXEL_BITS)?;
+        // A bare mesh states no budget: its share is printed, not judged.
+        let stated = &self.loaded.file.budget;
+        let budget = (!self.loaded.bare).then_some(stated.edge.0);
+        let seen = embree::run(&spec, budget, &mut self.rows);
+        if let Some(seen) = seen.filter(|_| self.options.pictures) {
+            let pixels = embree::picture(&self.loaded.scene, &spec.value, &seen);
+            self.pictures
+                .push(pictures::leg("embree", self.loaded.scene.size, &pixels));
+        }
+        Ok(())
+    }
+}
+
+/// Where a row stands: closed form, Embree, then GPU legs by name.
+fn column(row: &Row) -> (u8, String) {
+    let rank = match row.b.as_str() {
+        "closed form" => 0,
+        "embree" => 1,
+        leg if row.a == "spec" && leg.starts_with("gpu") => 2,
+        _ => 3,
+    };
+    (rank, row.b.clone())
+}
