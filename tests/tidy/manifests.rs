@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::{assert_none, files, root};
+use super::{assert_none, root};
 
 /// The workspace's members.
 const MEMBERS: [&str; 4] = ["gpu", "harness", "spec", "tests"];
@@ -34,25 +34,6 @@ pub fn targets() -> Vec<String> {
         targets.extend(root().join(&library).is_file().then_some(library));
     }
     targets
-}
-
-/// Where cargo would look for targets that no Cargo.toml names, there are none.
-#[test]
-fn targets_are_named() {
-    let targets = targets();
-    let mut violations = Vec::new();
-    for file in files() {
-        let parts: Vec<&str> = file.name.split('/').collect();
-        let found = match parts[..] {
-            ["tests", name] => name.ends_with(".rs"),
-            [_, "tests" | "benches" | "examples", name] => name.ends_with(".rs"),
-            _ => false,
-        };
-        if found && !targets.contains(&file.name) {
-            violations.push(format!("{}: no Cargo.toml names it", file.name));
-        }
-    }
-    assert_none(&violations);
 }
 
 #[test]
