@@ -116,7 +116,7 @@ fn a_row_that_does_not_fit_is_refused_by_name() {
             depth_test: false,
             background: [0.0; 3],
         };
-        let sound = |_, _: &_| std::ops::ControlFlow::Continue(());
+        let sound = |_, _: &_| Some(8);
         let result = abuffer::run(&rasterizer.expect("it fits"), options, |_| false, sound);
         let error = result
             .err()

@@ -2,7 +2,6 @@
 
 mod attempt;
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use triptych_spec::abuffer::{Lists, Opaque};
@@ -10,7 +9,7 @@ use triptych_spec::abuffer::{Lists, Opaque};
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::{Next, Rasterizer, after, first_capacity, nodes_max};
-use attempt::{HEADER, Run};
+use attempt::{Buffers, HEADER, Run};
 pub use attempt::{PROGRESS, STEPS};
 
 /// Another leg's results in place of the stages before one.
@@ -53,6 +52,7 @@ pub struct BandResult {
 }
 
 /// The A-buffer of a whole target.
+#[derive(Default)]
 pub struct Abuffer {
     /// The nearest opaque surface of each pixel.
     pub opaque: Opaque,
@@ -60,10 +60,14 @@ pub struct Abuffer {
     pub bands: Vec<BandResult>,
     /// Attempts that did not fit, in order: the band, and what was stored.
     pub overflowed: Vec<(Band, Lists)>,
-    /// The picture, row by row; empty if the lists were found damaged.
+    /// The picture, row by row; empty if any band could not be finished.
     pub image: Vec<[f32; 3]>,
     /// Time of each stage on the device, without transfers and retries.
     pub times: Times,
+    /// Some band's lists were found damaged; nothing is sorted from there on.
+    pub damaged: bool,
+    /// The stage that followed a list without coming to its end.
+    pub endless: Option<&'static str>,
 }
 
 /// Device time per stage.
@@ -80,8 +84,8 @@ pub struct Times {
 }
 
 /// Runs the whole family. `is_opaque` sorts the triangles into the two passes;
-/// `inspect` sees each band's lists after `build` and says whether they are sound
-/// enough to be followed by a kernel.
+/// `inspect` sees each band's lists after `build` and gives the length of the
+/// longest, or `None` if they are too damaged to be followed by a kernel.
 ///
 /// # Errors
 /// Limits by name, WGSL errors, and whatever the device reports.
@@ -89,24 +93,14 @@ pub fn run(
     rasterizer: &Rasterizer<'_>,
     options: Options<'_>,
     is_opaque: impl Fn(u32) -> bool,
-    mut inspect: impl FnMut(Band, &Lists) -> ControlFlow<()>,
+    mut inspect: impl FnMut(Band, &Lists) -> Option<u32>,
 ) -> Result<Abuffer, GpuError> {
     let size = rasterizer.size;
-    let mut result = Abuffer {
-        opaque: Opaque {
-            key: Vec::new(),
-            prim: Vec::new(),
-        },
-        bands: Vec::new(),
-        overflowed: Vec::new(),
-        image: Vec::new(),
-        times: Times::default(),
-    };
+    let mut result = Abuffer::default();
     let mut capacity = match options.given {
         Some(given) => given.lists.attempts,
         None => options.capacity.unwrap_or_else(|| first_capacity(size)),
     };
-    let mut sound = true;
     let mut bands = vec![Band::whole(size)];
     while let Some(band) = bands.pop() {
         if let (false, Some([upper, lower])) = (fits(rasterizer, band), band.halves()) {
@@ -114,51 +108,68 @@ pub fn run(
             continue;
         }
         capacity = capacity.min(nodes_max(rasterizer.gpu));
+        let times = Times::default();
         let mut run = Run {
             rasterizer,
             options,
             band,
             capacity,
-            times: Times::default(),
+            times,
         };
         let buffers = run.buffers()?;
-        if options.opaque && options.given.is_none() {
-            run.opaque(&buffers, &is_opaque)?;
-        }
-        if options.lists && options.given.is_none() {
-            run.build(&buffers, &is_opaque)?;
-        }
+        run.fill(&buffers, &is_opaque)?;
         let built = run.lists(&buffers)?;
         match after(rasterizer.gpu, "build", band, built.attempts, capacity)? {
-            Next::Done => {}
+            Next::Done => {
+                let longest = inspect(band, &built);
+                result.finish(run, &buffers, built, longest)?;
+            }
             Next::Resize(exact) => {
                 result.overflowed.push((band, built));
                 capacity = exact;
                 bands.push(band);
-                continue;
             }
             Next::Split([upper, lower]) => {
                 result.overflowed.push((band, built));
                 bands.extend([lower, upper]);
-                continue;
             }
         }
-        result.opaque.key.extend(run.read(&buffers.opaque_key)?);
-        result.opaque.prim.extend(run.read(&buffers.opaque_prim)?);
-        sound &= inspect(band, &built).is_continue();
-        let sorted = if sound {
-            Some(run.finish(&buffers, &mut result.image)?)
-        } else {
-            None
-        };
-        result.times.add(run.times);
-        result.bands.push(BandResult {
-            band,
+    }
+    Ok(result)
+}
+
+impl Abuffer {
+    /// Adds a band whose lists are built: sorts and resolves them, unless any band's
+    /// lists are damaged.
+    fn finish(
+        &mut self,
+        mut run: Run<'_, '_>,
+        buffers: &Buffers,
+        built: Lists,
+        longest: Option<u32>,
+    ) -> Result<(), GpuError> {
+        self.opaque.key.extend(run.read(&buffers.opaque_key)?);
+        self.opaque.prim.extend(run.read(&buffers.opaque_prim)?);
+        self.damaged |= longest.is_none();
+        let mut sorted = None;
+        if let (false, None, Some(longest)) = (self.damaged, self.endless, longest) {
+            match run.finish(buffers, longest, &mut self.image) {
+                Ok(lists) => sorted = Some(lists),
+                Err(GpuError::Endless { stage, .. }) => self.endless = Some(stage),
+                Err(error) => return Err(error),
+            }
+        }
+        if sorted.is_none() {
+            self.image.clear();
+        }
+        self.times.add(run.times);
+        self.bands.push(BandResult {
+            band: run.band,
             built,
             sorted,
         });
+        Ok(())
     }
-    Ok(result)
 }
 
 /// Whether a band's pixels fit a dispatch, and their largest buffer a binding. What

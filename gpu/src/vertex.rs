@@ -20,6 +20,9 @@ const VERTICES: u32 = 65_535 * WORKGROUP;
 /// WebGPU lets every kernel bind.
 const TRIANGLES: usize = 1 << 19;
 
+/// What a device exceeds that clips a triangle to more corners than six planes can.
+pub const CLIPPED: &str = "corners of a clipped triangle";
+
 /// Bytes of a triangle's slots.
 const SLOTS: u64 = 16 * CORNERS_MAX as u64;
 
@@ -202,8 +205,7 @@ impl<'g> Stages<'g> {
         let counts: Vec<u32> = self.gpu.read(&self.counts, triangles.len())?;
         let most = counts.iter().copied().max().unwrap_or(0);
         if most as usize > CORNERS_MAX {
-            let what = "corners of a clipped triangle";
-            return Err(self.limit(what, u64::from(most), CORNERS_MAX as u64));
+            return Err(self.limit(CLIPPED, u64::from(most), CORNERS_MAX as u64));
         }
         Ok(counts)
     }

@@ -43,6 +43,8 @@ pub struct Judgement {
     pub marks: Vec<(u32, Cause)>,
     /// One line for people.
     pub note: String,
+    /// Why nothing was judged, where all items were admitted.
+    pub skipped: Option<String>,
 }
 
 impl Judgement {
@@ -60,6 +62,7 @@ impl Judgement {
             described: Vec::new(),
             marks: Vec::new(),
             note: String::new(),
+            skipped: None,
         }
     }
 

@@ -17,7 +17,7 @@ use std::path::Path;
 
 use crate::error::InputError;
 
-pub use hair::load as load_hair;
+pub use hair::{layout_of, load as load_hair};
 pub use read::{BYTES_MAX, read};
 
 /// Most triangles of a mesh and of a scene. A triangle costs a leg up to about

@@ -87,7 +87,7 @@ impl Row {
         self.admitted as f64 / self.compared.max(1) as f64
     }
 
-    /// The verdict; a row that compared nothing and gives no reason diverges.
+    /// The verdict; a row that judged nothing and gives no reason diverges.
     pub fn verdict(&self) -> Verdict {
         let share = self.admitted_share();
         let over_budget = self.admitted_budget.is_some_and(|budget| share > budget);
@@ -95,7 +95,7 @@ impl Row {
             Verdict::Diverge
         } else if self.skipped.is_some() {
             Verdict::Skipped
-        } else if self.compared == 0 {
+        } else if self.compared <= self.admitted {
             Verdict::Diverge
         } else {
             Verdict::Agree

@@ -24,7 +24,7 @@ pub const EOL: u32 = u32::MAX;
 pub const NOTHING: u32 = u32::MAX;
 
 /// The nearest opaque surface of every pixel.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Opaque {
     /// Depth key, or [`NOTHING`].
     pub key: Vec<u32>,
@@ -183,7 +183,13 @@ pub fn sort(lists: &Lists) -> Sorted {
 /// `sum_i T_i a_i c_i + T_n b`, `T_i = prod_{j<i} (1 - a_j)`. Term `i` of an
 /// evaluation in `f32` meets `2i` roundings in `T_i`, two products, and at most
 /// `n + 1` additions in any order, so its error is at most
-/// `gamma(2i + n + 3) |term_i|`; flushing adds [`TINY`] per operation.
+/// `gamma(2i + n + 3) |term_i|`.
+///
+/// Flushing changes an operand or result by [`TINY`] at most. What is flushed on the
+/// way to the weight `T_i a_i` (its `2i + 1` operations, and the opacities) is
+/// multiplied by factors within 1 and then by the colour, which may be large: at
+/// most `(3i + 2) |c_i| TINY`. The colour itself, the product and the addition add
+/// three more.
 pub fn resolve(
     scene: &Scene,
     primitives: &Primitives,
@@ -218,7 +224,8 @@ fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
         for (channel, c) in sum.iter_mut().zip(colour) {
             let term = weight * f64::from(c);
             channel.value += term;
-            channel.bound += gamma(2 * i + n + 3) * term.abs() + 3.0 * TINY;
+            channel.bound += gamma(2 * i + n + 3) * term.abs();
+            channel.bound += (f64::from(3 * i + 2) * f64::from(c.abs()) + 3.0) * TINY;
         }
     };
     let mut transmittance = 1.0;

@@ -99,11 +99,7 @@ impl Run<'_, '_> {
         }
     }
 
-    pub(super) fn opaque(
-        &mut self,
-        b: &Buffers,
-        is_opaque: &impl Fn(u32) -> bool,
-    ) -> Result<(), GpuError> {
+    fn opaque(&mut self, b: &Buffers, is_opaque: &impl Fn(u32) -> bool) -> Result<(), GpuError> {
         let work = self.rasterizer.work(self.band, is_opaque)?;
         for stage in ["opaque_nearest", "opaque_first"] {
             let buffers = b.named();
@@ -114,11 +110,7 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    pub(super) fn build(
-        &mut self,
-        b: &Buffers,
-        is_opaque: &impl Fn(u32) -> bool,
-    ) -> Result<(), GpuError> {
+    fn build(&mut self, b: &Buffers, is_opaque: &impl Fn(u32) -> bool) -> Result<(), GpuError> {
         let work = self.rasterizer.work(self.band, |prim| !is_opaque(prim))?;
         let buffers = b.named();
         self.times.build =
@@ -127,16 +119,36 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// Sorts and resolves; gives the sorted lists and appends to the picture.
+    /// Runs the passes that fill the buffers, unless they hold another leg's results.
+    pub(super) fn fill(
+        &mut self,
+        b: &Buffers,
+        is_opaque: &impl Fn(u32) -> bool,
+    ) -> Result<(), GpuError> {
+        if self.options.given.is_some() {
+            return Ok(());
+        }
+        if self.options.opaque {
+            self.opaque(b, is_opaque)?;
+        }
+        if self.options.lists {
+            self.build(b, is_opaque)?;
+        }
+        Ok(())
+    }
+
+    /// Sorts and resolves lists of at most `longest` nodes; gives the sorted lists and
+    /// appends to the picture.
     pub(super) fn finish(
         &mut self,
         b: &Buffers,
+        longest: u32,
         image: &mut Vec<[f32; 3]>,
     ) -> Result<Lists, GpuError> {
         if self.options.lists && !self.options.given.is_some_and(|g| g.sorted) {
-            self.times.sort = self.until_done("sort", b)?;
+            self.times.sort = self.until_done("sort", longest, b)?;
         }
-        self.times.resolve = self.until_done("resolve", b)?;
+        self.times.resolve = self.until_done("resolve", longest, b)?;
         let pixels = self.band.pixels(self.rasterizer.size) as usize;
         let picture = self.gpu().read::<[f32; 4]>(&b.picture, pixels)?;
         image.extend(picture.into_iter().map(|[r, g, b, _]| [r, g, b]));
@@ -144,16 +156,22 @@ impl Run<'_, '_> {
     }
 
     /// Dispatches a stage until no pixel asks for more. Merging a list of n nodes
-    /// takes at most 4 n steps in each of at most 32 passes; what needs more
-    /// follows a list that does not end.
-    fn until_done(&self, stage: &'static str, b: &Buffers) -> Result<Duration, GpuError> {
+    /// takes at most 4 n steps in each of at most log2(n) + 1 passes; what needs
+    /// more follows a list that does not end.
+    fn until_done(
+        &self,
+        stage: &'static str,
+        longest: u32,
+        b: &Buffers,
+    ) -> Result<Duration, GpuError> {
         let gpu = self.gpu();
         let pixels = u64::from(self.band.pixels(self.rasterizer.size));
         let progress = gpu.storage("progress", HEADER + PROGRESS * pixels)?;
         let mut buffers = b.named().to_vec();
         buffers.push(("progress", &progress));
         let mut time = Duration::ZERO;
-        for _ in 0..=4 * 32 * u64::from(self.capacity) / STEPS {
+        let passes = u64::from(longest.max(1).ilog2()) + 1;
+        for _ in 0..=4 * u64::from(longest) * passes / STEPS {
             gpu.queue.write_buffer(&progress, 0, &[0; 4]);
             time += per_pixel(self.rasterizer, "abuffer", stage, self.frame(), &buffers)?;
             if gpu.read::<u32>(&progress, 1)?[0] == 0 {

@@ -11,6 +11,7 @@ use super::Verdict;
 use super::run_info::{run_info, scene_report};
 use crate::cache::Cache;
 use crate::dump::Dump;
+use crate::error::InputError;
 use crate::replay::gpu::{Adapter, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
@@ -111,10 +112,16 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         None => None,
     };
     let mut reporter = Reporter::new(selected.len()).with_options(args.again());
-    let (mut rows, mut scenes) = (Vec::new(), Vec::new());
+    let (mut rows, mut scenes, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
     for entry in &selected {
         reporter.scene_started(&entry.name);
-        let outcome = replay(entry, &adapters, &options)?;
+        let outcome = match replay(entry, &adapters, &options) {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                unreadable.push(error);
+                continue;
+            }
+        };
         if let Some(writer) = &mut writer {
             writer.rows(&outcome.rows)?;
         }
@@ -129,6 +136,10 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         })?;
         scenes.push(scene_report(outcome));
     }
+    if let ([], Some(_)) = (scenes.as_slice(), unreadable.first()) {
+        drop(reporter);
+        return could_not_run(unreadable);
+    }
     let summary = Summary::of(&rows, start.elapsed().as_secs_f64());
     if let Some(writer) = writer {
         writer.finish(summary.seconds)?;
@@ -141,7 +152,19 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     if args.open {
         open(&page)?;
     }
+    if !unreadable.is_empty() {
+        return could_not_run(unreadable);
+    }
     verdict(&summary)
+}
+
+/// Says of every scene that could not be read why, a line each.
+fn could_not_run(mut errors: Vec<InputError>) -> anyhow::Result<Verdict> {
+    let last = errors.pop().context("no error")?;
+    for error in errors {
+        eprintln!("triptych: {error}");
+    }
+    Err(last.into())
 }
 
 /// A run that compared nothing at all has not agreed on anything.
@@ -176,7 +199,10 @@ impl Args {
             return Ok(Vec::new());
         }
         let adapters = Adapter::open_all(&self.adapter)?;
-        if adapters.is_empty() && !self.adapter.is_empty() {
+        if adapters.is_empty() && self.adapter.is_empty() {
+            anyhow::bail!("no adapter; `./x setup` installs two software drivers");
+        }
+        if adapters.is_empty() {
             let wanted = self.adapter.join(" or ");
             anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
         }

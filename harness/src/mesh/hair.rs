@@ -2,7 +2,7 @@
 //! .bin.gz the data lie. Each strand becomes a prism of three sides.
 
 use std::num::NonZeroU32;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{Mesh, read, too_large};
 use crate::error::InputError;
@@ -18,6 +18,13 @@ struct Extent {
     count: u64,
 }
 
+/// `NAME.xml` beside `NAME.bin.gz`.
+pub fn layout_of(path: &Path) -> PathBuf {
+    let stem = path.to_string_lossy();
+    let stem = stem.strip_suffix(".bin.gz").unwrap_or(&stem);
+    PathBuf::from(format!("{stem}.xml"))
+}
+
 /// Loads `NAME.bin.gz`, whose layout `NAME.xml` beside it gives: `indices` (u32,
 /// little-endian), each the first point of a segment that ends in the next point,
 /// and `positions` (x, y, z, radius in f32). Every `stride`th strand is kept.
@@ -26,9 +33,7 @@ struct Extent {
 /// A layout that does not fit the data, or data out of range.
 pub fn load(path: &Path, bytes: &[u8], stride: NonZeroU32) -> Result<Mesh, InputError> {
     let bytes = read::unpacked(path, bytes)?;
-    let stem = path.to_string_lossy();
-    let stem = stem.strip_suffix(".bin.gz").unwrap_or(&stem);
-    let (indices, positions) = layout(Path::new(&format!("{stem}.xml")))?;
+    let (indices, positions) = layout(&layout_of(path))?;
     let error = |message: String| InputError::new(path, message);
     let indices = array::<4>(&bytes, indices).map_err(error)?;
     let indices: Vec<u32> = indices.iter().map(|b| u32::from_le_bytes(*b)).collect();

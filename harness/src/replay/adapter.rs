@@ -44,11 +44,25 @@ impl Adapter {
             .filter(|(name, _)| wanted.is_empty() || asked(name))
             .collect();
         found.sort_by(|a, b| a.0.cmp(&b.0));
-        found.dedup_by(|a, b| a.0 == b.0);
-        found
-            .iter()
-            .map(|(_, adapter)| Self::open(adapter))
-            .collect()
+        // A software driver may be listed twice; two boards of one kind are two.
+        found.dedup_by(|a, b| {
+            let (a, b) = (a.1.get_info(), b.1.get_info());
+            a.device_type == wgpu::DeviceType::Cpu && a == b
+        });
+        let mut adapters: Vec<Self> = Vec::with_capacity(found.len());
+        for (name, adapter) in &found {
+            let mut adapter = Self::open(adapter)?;
+            let alike = found
+                .iter()
+                .take(adapters.len())
+                .filter(|(n, _)| n == name)
+                .count();
+            if alike > 0 {
+                adapter.gpu.name = format!("{name}#{}", alike + 1);
+            }
+            adapters.push(adapter);
+        }
+        Ok(adapters)
     }
 
     /// Opens and calibrates one adapter.

@@ -71,6 +71,9 @@ fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgem
     if judgement.compared == 0 {
         judgement.unit = "rays";
         judgement.compared = vote.rays;
+    } else if judgement.compared == judgement.admitted && vote.disagreeing() == 0 {
+        let reason = format!("all {} pairs are in class edge", vote.pairs);
+        judgement.skipped = Some(reason);
     }
     judgement
 }

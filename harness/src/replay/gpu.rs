@@ -3,7 +3,6 @@
 mod judge;
 mod lists;
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use triptych_gpu::abuffer::{self, Abuffer, Given};
@@ -122,13 +121,7 @@ impl GpuLeg<'_> {
             depth_test: self.plan.depth_test,
             background: self.scene.background,
         };
-        let inspect = |_: Band, lists: &Lists| {
-            if certify(lists).faults.is_empty() {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        };
+        let inspect = |_: Band, lists: &Lists| certify(lists).longest();
         let abuffer = abuffer::run(rasterizer, options, |prim| spec.is_opaque(prim), inspect)?;
         let t = abuffer.times;
         let time = t.opaque + t.build + t.sort + t.resolve;
@@ -185,7 +178,8 @@ impl GpuLeg<'_> {
         Ok(())
     }
 
-    fn by_band(&self) -> bool {
+    /// Whether the driver's sub-pixel grid matters and is unknown.
+    pub fn by_band(&self) -> bool {
         self.path == Path::Fragment && self.adapter.grid == Grid::Unknown
     }
 

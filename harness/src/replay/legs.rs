@@ -2,6 +2,8 @@
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
+use triptych_gpu::vertex::CLIPPED;
+use triptych_spec::raster::Fragment;
 
 use super::gpu::{Adapter, From, GpuLeg};
 use super::run::{Run, Stop};
@@ -60,23 +62,31 @@ impl Run<'_> {
         let spec = self.spec(adapter.bits(path))?;
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
         match self.leg_or_error(&spec, adapter, path) {
-            Ok(stop) => stop,
-            Err(error @ GpuError::Limit { .. }) => {
-                self.rows
-                    .skip("leg", "spec", &label, Class::Exact, error.to_string());
-                Ok(())
-            }
+            Ok(dumped) => dumped.map_err(Stop::Dump),
             Err(error) => {
-                let cause = match error {
-                    GpuError::Lost { .. } => Some(Cause::DeviceLost),
-                    GpuError::Endless { .. } => Some(Cause::Cycle),
-                    _ => None,
-                };
-                self.rows
-                    .fail("leg", "spec", &label, cause, error.to_string());
+                self.refused("leg", &label, &spec.value, &error);
                 Ok(())
             }
         }
+    }
+
+    /// Notes what kept a device from a result: a limit is a reason to skip only if the
+    /// spec's own counts say that the scene exceeds it.
+    fn refused(&mut self, stage: &str, label: &str, spec: &SpecRun, error: &GpuError) {
+        let cause = match error {
+            GpuError::Limit { what, limit, .. } if exceeds(spec, what, *limit) => {
+                let reason = error.to_string();
+                self.rows.skip(stage, "spec", label, Class::Exact, reason);
+                return;
+            }
+            GpuError::Limit { what: CLIPPED, .. } => Some(Cause::Vertex),
+            GpuError::Limit { .. } => Some(Cause::Overflow),
+            GpuError::Lost { .. } => Some(Cause::DeviceLost),
+            GpuError::Endless { .. } => Some(Cause::Cycle),
+            _ => None,
+        };
+        let reason = error.to_string();
+        self.rows.fail(stage, "spec", label, cause, reason);
     }
 
     fn leg_or_error(
@@ -84,17 +94,9 @@ impl Run<'_> {
         spec: &Observed<Spec, SpecRun>,
         adapter: &Adapter,
         path: Path,
-    ) -> Result<Result<(), Stop>, GpuError> {
+    ) -> Result<std::io::Result<()>, GpuError> {
         let (scene, plan) = (&self.loaded.scene, self.plan.clone());
-        let own = self.vertices(spec, adapter, path)?;
-        // End to end, the later stages of both legs start from the GPU's vertices.
-        let moved = match own {
-            Some(primitives) => match SpecRun::new(scene, primitives, &self.plan) {
-                Ok(run) => Some(Observed::new("spec", run)),
-                Err(message) => return Ok(Err(Stop::Input(message))),
-            },
-            None => None,
-        };
+        let moved = self.moved(spec, adapter, path)?;
         let from_own = self.options.from == From::Transform;
         let leg = GpuLeg {
             adapter,
@@ -106,18 +108,55 @@ impl Run<'_> {
             from: self.options.from,
         };
         let seen = leg.run(&mut self.rows)?;
-        if let Some(moved) = moved.as_ref().filter(|_| !from_own) {
-            vertex::end_to_end(&GpuLeg { spec: moved, ..leg }, spec, &mut self.rows)?;
+        if let Some(moved) = moved.as_ref().filter(|_| !from_own && !leg.by_band()) {
+            // Whatever the leg was handed before, this run takes nothing but vertices.
+            let leg = GpuLeg {
+                spec: moved,
+                from: From::Cover,
+                ..leg
+            };
+            vertex::end_to_end(&leg, spec, &mut self.rows)?;
         }
         if self.options.skip && self.measures_skips(adapter, path) {
             self.saved_ms = skips::run(&leg, &seen, &mut self.rows)?;
         }
-        if self.options.pictures && seen.value.sorted.is_some() {
+        if self.options.pictures && !seen.value.abuffer.image.is_empty() {
             let image = &seen.value.abuffer.image;
             self.pictures
                 .push(pictures::leg(&seen.label, scene.size, image));
         }
-        Ok(self.dump_gpu(&leg.spec.value, &seen).map_err(Stop::Dump))
+        Ok(self.dump_gpu(&leg.spec.value, &seen))
+    }
+
+    /// The spec's later stages on the GPU's own vertices, where these are wanted and
+    /// differ from the spec's.
+    fn moved(
+        &mut self,
+        spec: &Observed<Spec, SpecRun>,
+        adapter: &Adapter,
+        path: Path,
+    ) -> Result<Option<Observed<Spec, SpecRun>>, GpuError> {
+        let own = match self.vertices(spec, adapter, path) {
+            Err(lost @ GpuError::Lost { .. }) => return Err(lost),
+            Err(error) => {
+                let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+                self.refused("vertex", &label, &spec.value, &error);
+                None
+            }
+            Ok(own) => own,
+        };
+        let Some(own) = own else {
+            return Ok(None);
+        };
+        match SpecRun::new(&self.loaded.scene, own, &self.plan) {
+            Ok(run) => Ok(Some(Observed::new("spec", run))),
+            Err(message) => {
+                let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+                self.rows
+                    .fail("end to end", "spec", &label, Some(Cause::Vertex), message);
+                Ok(None)
+            }
+        }
     }
 
     /// The GPU's own vertex stage, compared with the spec's. It is the same for both
@@ -139,6 +178,8 @@ impl Run<'_> {
             spec,
             adapter,
             path,
+            // A bare mesh states no budgets.
+            (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
             judged.then_some(&mut self.rows),
         )
     }
@@ -163,5 +204,25 @@ impl Run<'_> {
             Capacity::All => None,
             stated => Some(stated.nodes(spec.lists.attempts)),
         }
+    }
+}
+
+/// Whether a scene's own numbers exceed a limit that a device ran into. What the host
+/// sizes by the scene does; what a device counted must be what the spec counts, and
+/// is only split down to a row.
+fn exceeds(spec: &SpecRun, what: &str, limit: u64) -> bool {
+    let width = spec.primitives.size.width;
+    let largest = |fragments: &[Fragment]| {
+        let mut rows = vec![0_u64; spec.primitives.size.height as usize];
+        for f in fragments {
+            rows[(f.pixel / width) as usize] += 1;
+        }
+        rows.into_iter().max().unwrap_or(0)
+    };
+    match what {
+        CLIPPED => false,
+        "build" => largest(&spec.sorted.fragments) > limit,
+        "cover" => largest(&spec.fragments()) > limit,
+        _ => true,
     }
 }

@@ -58,6 +58,7 @@ impl Rows {
             ms_a: a.time.map(ms),
             ms_b: b.time.map(ms),
             note,
+            skipped: judgement.skipped,
             ..self.blank(stage, &a.label, &b.label, judgement.class)
         });
     }

@@ -14,7 +14,7 @@ use crate::compare::{Judgement, compare};
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
 use crate::report::Picture;
-use crate::row::Row;
+use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
 
 /// Why a replay ends early.
@@ -69,6 +69,10 @@ impl<'a> Run<'a> {
         }
         if self.options.gpu {
             self.gpu()?;
+        }
+        if self.rows.rows.is_empty() {
+            let reason = "no other leg was asked for".to_owned();
+            self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
         let causes = pictures::causes(self.spec.as_deref(), &self.rows.marks);
         self.pictures

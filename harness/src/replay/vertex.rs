@@ -1,30 +1,25 @@
 //! The GPU's own vertex stage of one scene, and what follows from it.
 
-use std::collections::BTreeSet;
+use std::cmp::Ordering;
 use std::time::Duration;
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 use triptych_gpu::vertex;
 use triptych_spec::scene::Scene;
-use triptych_spec::vertex::Primitives;
+use triptych_spec::vertex::{DEPTH_ONE, GUARD, Primitives, guard_origin};
 
 use super::gpu::{Adapter, GpuLeg, GpuSeen};
 use super::rows::Rows;
 use super::spec::SpecRun;
 use crate::cause::Cause;
-use crate::compare::vertex::VertexReport;
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{Gpu, Observed, Spec};
 use crate::row::Class;
 
-/// Share of corners and triangles that may stay unjudged: branches with too many
-/// outcomes, coordinates on which WGSL promises nothing. Such scenes are built for
-/// it and are few.
-const UNJUDGED_BUDGET: f64 = 0.01;
-
 /// Runs the vertex stages on the device and, where `rows` is given, compares them.
-/// Gives the device's triangles if they differ from the spec's.
+/// Gives the device's triangles if they differ from the spec's and later stages can
+/// start from them. `budget` is the share of triangles that may be admitted.
 ///
 /// # Errors
 /// Whatever the device reports.
@@ -33,6 +28,7 @@ pub fn run(
     spec: &Observed<Spec, SpecRun>,
     adapter: &Adapter,
     path: Path,
+    budget: Option<f64>,
     rows: Option<&mut Rows>,
 ) -> Result<Option<Primitives>, GpuError> {
     let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
@@ -47,44 +43,44 @@ pub fn run(
     let run = vertex::run(&adapter.gpu, &adapter.kernels, scene, bits)?;
     let time: Duration = run.times.transform + run.times.clip + run.times.snap;
     let own = Observed::<Gpu, _>::new(label, run.primitives).taking(time);
+    let usable = is_usable(scene, &own.value);
     if let Some(rows) = rows {
-        let judgement = compare(spec, &own, |_, own| {
-            judge(&compare::vertex::compare(scene, bits, own))
+        let mut judgement = compare(spec, &own, |_, own| {
+            compare::vertex::compare(scene, bits, own).judgement()
         });
+        judgement.admitted_budget = budget;
         let spec = spec.map(|_| ()).taking(spec.value.times.vertex);
         rows.add("vertex", &spec, &own, judgement);
+        if !usable {
+            let reason = "corners outside the guard rectangle or the depth range".to_owned();
+            rows.fail(
+                "end to end",
+                &spec.label,
+                &own.label,
+                Some(Cause::Vertex),
+                reason,
+            );
+        }
     }
-    Ok(Some(own.value).filter(|own| *own != spec.value.primitives))
+    let differ = own.value != spec.value.primitives;
+    Ok(Some(own.value).filter(|_| usable && differ))
 }
 
-fn judge(report: &VertexReport) -> Judgement {
-    let figures = &report.figures;
-    let mut judgement = Judgement {
-        compared: report.corners,
-        admitted: report.undecided + figures.unbounded,
-        admitted_budget: Some(UNJUDGED_BUDGET),
-        error_over_bound: Some(figures.error_over_bound),
-        ..Judgement::new(Class::Interval, "corners")
+/// Whether a device's triangles keep to what every later stage relies on.
+fn is_usable(scene: &Scene, own: &Primitives) -> bool {
+    let origin = [scene.size.width, scene.size.height].map(guard_origin);
+    let inside = |c: &[i32; 3]| {
+        let within = |axis: usize| {
+            let low = origin[axis] << own.bits;
+            (low..=low + (GUARD << own.bits)).contains(&c[axis])
+        };
+        within(0) && within(1) && (0..=DEPTH_ONE).contains(&c[2])
     };
-    // Triangles that are clipped away have no corners, and were compared all the same.
-    if judgement.compared == 0 {
-        judgement.unit = "triangles";
-        judgement.compared = report.triangles - report.undecided;
-    }
-    judgement.note = format!(
-        "{} corners moved, by at most {:.3} sub-pixels and {:.0} keys; {} triangles decided \
-         either way",
-        figures.moved, figures.error_subpixels, figures.error_keys, report.decisions,
-    );
-    if report.outside > 0 {
-        judgement.causes.insert(Cause::Vertex, report.outside);
-        judgement.described = report.told.iter().map(|d| format!("{d:?}")).collect();
-    }
-    if let Some(malformed) = &report.malformed {
-        judgement.unexplained = 1;
-        judgement.described.push(malformed.clone());
-    }
-    judgement
+    let (corners, triangles) = (own.snapped.len(), scene.triangles.len());
+    own.snapped.iter().all(inside)
+        && own.prims.len() == own.source.len()
+        && own.prims.iter().flatten().all(|c| (*c as usize) < corners)
+        && own.source.iter().all(|t| (*t as usize) < triangles)
 }
 
 /// The whole family from the GPU's own vertices: the later stages must equal the
@@ -130,13 +126,21 @@ pub fn end_to_end(
 
 /// Fragments of either run that the other lacks, by pixel and source triangle.
 fn changed(a: &SpecRun, b: &SpecRun) -> usize {
-    let identify = |run: &SpecRun| -> BTreeSet<(u32, u32)> {
+    let identify = |run: &SpecRun| -> Vec<(u32, u32)> {
         let source = |prim: u32| run.primitives.source[prim as usize];
-        run.sorted
-            .fragments
-            .iter()
-            .map(|f| (f.pixel, source(f.prim)))
-            .collect()
+        let fragments = run.sorted.fragments.iter();
+        let mut all: Vec<_> = fragments.map(|f| (f.pixel, source(f.prim))).collect();
+        all.sort_unstable();
+        all
     };
-    identify(a).symmetric_difference(&identify(b)).count()
+    let (a, b) = (identify(a), identify(b));
+    let (mut i, mut j, mut common) = (0, 0, 0);
+    while i < a.len() && j < b.len() {
+        match a[i].cmp(&b[j]) {
+            Ordering::Less => i += 1,
+            Ordering::Greater => j += 1,
+            Ordering::Equal => (i, j, common) = (i + 1, j + 1, common + 1),
+        }
+    }
+    a.len() + b.len() - 2 * common
 }

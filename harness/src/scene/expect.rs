@@ -54,9 +54,19 @@ pub struct List {
 impl Expect {
     /// How many statements the scene makes.
     pub fn stated(&self) -> u64 {
-        let numbers = [self.fragments, self.layers_max, self.opaque, self.covered];
-        let numbers = numbers.iter().flatten().count();
-        (numbers + self.cover.len() + self.lists.len()) as u64
+        // Named one by one, so that a new key cannot be forgotten here.
+        let Self {
+            fragments,
+            layers_max,
+            layers_min,
+            opaque,
+            covered,
+            cover,
+            lists,
+        } = self;
+        let numbers = [fragments, layers_max, layers_min, opaque, covered];
+        let numbers = numbers.iter().filter(|n| n.is_some()).count();
+        (numbers + cover.len() + lists.len()) as u64
     }
 }
 

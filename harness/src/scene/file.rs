@@ -233,11 +233,19 @@ pub struct Budget {
     /// Pairs of ray and triangle too close to an edge for Embree's vote.
     #[serde(default = "Budget::default_edge")]
     pub edge: Share,
+    /// Triangles that the vertex stage may decide either way, or on whose corners
+    /// WGSL promises nothing.
+    #[serde(default = "Budget::default_vertex")]
+    pub vertex: Share,
 }
 
 impl Budget {
     fn default_edge() -> Share {
         Share(0.001)
+    }
+
+    fn default_vertex() -> Share {
+        Share(0.01)
     }
 }
 
@@ -245,6 +253,7 @@ impl Default for Budget {
     fn default() -> Self {
         Self {
             edge: Self::default_edge(),
+            vertex: Self::default_vertex(),
         }
     }
 }

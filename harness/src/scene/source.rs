@@ -57,6 +57,9 @@ fn load_one(
             let (path, pinned) = find_package(parsed, package)?;
             let name = package.get_ref();
             let source = load_file(parsed, entry, &path, format!("package {name}"), digest)?;
+            if is_hair(&path) {
+                check_layout(&mesh::layout_of(&path))?;
+            }
             if source.stats.sha256.as_deref() != Some(&pinned) {
                 let found = source.stats.sha256.unwrap_or_default();
                 let message = format!(
@@ -100,8 +103,10 @@ fn load_file(
     let bytes = mesh::read(path, mesh::BYTES_MAX)?;
     let sha256 = hex(&Sha256::digest(&bytes));
     digest.update(sha256.as_bytes());
-    let strands = path.to_string_lossy().ends_with(".bin.gz");
-    let mesh = match (strands, entry.get_ref().hair) {
+    if is_hair(path) {
+        digest.update(sha256_of(&mesh::layout_of(path))?);
+    }
+    let mesh = match (is_hair(path), entry.get_ref().hair) {
         (true, hair) => mesh::load_hair(path, &bytes, hair.unwrap_or_default().stride)?,
         (false, None) => mesh::load(path, &bytes)?,
         (false, Some(_)) => {
@@ -113,6 +118,33 @@ fn load_file(
         digest.update(format!("{named:?}"));
     }
     Ok(Source::new(source, Some(sha256), mesh, entry.get_ref()))
+}
+
+fn is_hair(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(".bin.gz")
+}
+
+fn sha256_of(path: &Path) -> Result<String, InputError> {
+    Ok(hex(&Sha256::digest(&mesh::read(path, mesh::BYTES_MAX)?)))
+}
+
+/// Holds the layout of a package's hair against the hash that its own row pins.
+fn check_layout(layout: &Path) -> Result<(), InputError> {
+    let name = layout.file_name().unwrap_or_default().to_string_lossy();
+    let rows = mesh::lock::read()?;
+    let pinned = rows.iter().find(|row| row.name == name);
+    let found = sha256_of(layout)?;
+    match pinned {
+        Some(row) if row.sha256 == found => Ok(()),
+        Some(row) => {
+            let message = format!(
+                "has sha256 {found}, not {} of corpus/meshes.lock; run {INSTALL}",
+                row.sha256
+            );
+            Err(InputError::new(layout, message))
+        }
+        None => Err(InputError::new(layout, "is not in corpus/meshes.lock")),
+    }
 }
 
 impl Source {

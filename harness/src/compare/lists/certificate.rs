@@ -34,6 +34,12 @@ impl Certificate {
         self.faults.is_empty() && self.unowned.is_empty()
     }
 
+    /// Nodes in the longest list; `None` if a link leads astray.
+    pub fn longest(&self) -> Option<u32> {
+        let lengths = self.offsets.windows(2).map(|w| w[1] - w[0]);
+        self.faults.is_empty().then(|| lengths.max().unwrap_or(0))
+    }
+
     /// The addresses of a pixel's nodes, from the head on.
     pub fn list(&self, pixel: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|i| self.offsets[pixel as usize + i] as usize);

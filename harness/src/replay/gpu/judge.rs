@@ -5,6 +5,7 @@ use triptych_gpu::frame::Band;
 use triptych_spec::abuffer::{Lists, Sorted};
 
 use super::{From, GpuLeg, GpuSeen};
+use crate::cause::Cause;
 use crate::compare::lists::compare_overflowed;
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
@@ -73,6 +74,17 @@ impl GpuLeg<'_> {
     pub(super) fn judge_sort(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
         if let Some(reason) = self.reason_not_run("sort", From::Sort) {
             rows.skip("sort", &self.spec.label, &seen.label, Class::Tie, reason);
+            return;
+        }
+        if let Some(stage) = seen.value.abuffer.endless {
+            let reason = format!("stage {stage} follows a list that does not end");
+            rows.fail(
+                "sort",
+                &self.spec.label,
+                &seen.label,
+                Some(Cause::Cycle),
+                reason,
+            );
             return;
         }
         if seen.value.abuffer.bands.iter().any(|b| b.sorted.is_none()) {
