@@ -88,7 +88,7 @@ impl Drop for Lent<'_> {
         let set = std::mem::take(&mut self.set);
         let mut state = self.from.state();
         state.lent -= 1;
-        if !self.spoilt {
+        if !self.spoilt && !std::thread::panicking() {
             state.idle.push(set);
         }
         self.from.returned.notify_one();

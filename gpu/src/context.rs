@@ -1,6 +1,6 @@
 //! Adapters, devices, buffers, and reading results back.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::error::GpuError;
 
@@ -213,11 +213,15 @@ impl Gpu {
     /// # Errors
     /// The first failure.
     pub fn check(&self) -> Result<(), GpuError> {
-        let failure = self
-            .failure
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        failure.clone().map_or(Ok(()), Err)
+        // A call that is refused may be so because the device is lost: let it be told.
+        if matches!(*self.failure(), Some(GpuError::Refused { .. })) {
+            let _ = self.device.poll(wgpu::PollType::Poll);
+        }
+        self.failure().clone().map_or(Ok(()), Err)
+    }
+
+    fn failure(&self) -> MutexGuard<'_, Option<GpuError>> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn wait(&self) -> Result<(), GpuError> {
@@ -234,13 +238,17 @@ impl Gpu {
     }
 }
 
-/// Keeps the first error and the loss of the device for [`Gpu::check`].
+/// Keeps the first error for [`Gpu::check`], or the loss of the device, which is why
+/// there are others.
 fn watch(device: &wgpu::Device, name: &str, failure: &Arc<Mutex<Option<GpuError>>>) {
     let keep = |slot: &Mutex<Option<GpuError>>, error: GpuError| {
-        let mut slot = slot
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        slot.get_or_insert(error);
+        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        match &error {
+            GpuError::Lost { .. } => *slot = Some(error),
+            _ => {
+                slot.get_or_insert(error);
+            }
+        }
     };
     let (slot, adapter) = (failure.clone(), name.to_owned());
     device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -253,17 +261,11 @@ fn watch(device: &wgpu::Device, name: &str, failure: &Arc<Mutex<Option<GpuError>
         );
     }));
     let (slot, adapter) = (failure.clone(), name.to_owned());
+    // Also called when the device is dropped; then nobody is left to ask.
     device.set_device_lost_callback(move |reason, message| {
-        // Dropping the device is not a loss.
-        if reason != wgpu::DeviceLostReason::Destroyed {
-            keep(
-                &slot,
-                GpuError::Lost {
-                    adapter: adapter.clone(),
-                    reason: message,
-                },
-            );
-        }
+        let reason = format!("{reason:?}: {message}");
+        let adapter = adapter.clone();
+        keep(&slot, GpuError::Lost { adapter, reason });
     });
 }
 

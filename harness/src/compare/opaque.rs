@@ -1,6 +1,8 @@
 //! Stage `opaque`: the nearest opaque surface of every pixel.
 
 use triptych_spec::abuffer::{NOTHING, Opaque};
+use triptych_spec::raster::{Setup, sample};
+use triptych_spec::vertex::Primitives;
 
 use crate::cause::Cause;
 use crate::compare::Judgement;
@@ -9,10 +11,12 @@ use crate::row::Class;
 
 /// Compares key and triangle of every pixel.
 ///
-/// Another triangle with the same key is a broken tie; the same triangle with
-/// another key a wrong key; anything else is a surface that covers a pixel which it
-/// must not, or the other way round.
-pub fn compare(spec: &Opaque, other: &Opaque, width: u32) -> Judgement {
+/// Another triangle with the same key is a broken tie. A triangle with another key
+/// than the spec gives it there is a wrong key; with the same key, it shows through
+/// because a nearer one is not there, which is coverage, as is a triangle that must
+/// not be there at all.
+pub fn compare(spec: &Opaque, other: &Opaque, primitives: &Primitives) -> Judgement {
+    let width = primitives.size.width;
     let mut judgement = Judgement::new(Class::Exact, "pixels");
     if other.key.len() != spec.key.len() || other.prim.len() != spec.prim.len() {
         judgement.differs(Cause::ReferenceMissing, None, || {
@@ -26,9 +30,11 @@ pub fn compare(spec: &Opaque, other: &Opaque, width: u32) -> Judgement {
         judgement.compared += 1;
         let cause = match (key == seen_key, prim == seen_prim) {
             (true, true) => continue,
-            (true, false) => Cause::TieOrder,
-            (false, true) => Cause::DepthKey,
-            (false, false) => Cause::Coverage,
+            (true, false) if *seen_prim != NOTHING => Cause::TieOrder,
+            _ => match key_at(primitives, *seen_prim, pixel) {
+                Some(must) if must != *seen_key => Cause::DepthKey,
+                _ => Cause::Coverage,
+            },
         };
         judgement.differs(cause, Some(pixel), || {
             let (seen, must) = (surface(*seen_key, *seen_prim), surface(*key, *prim));
@@ -36,6 +42,15 @@ pub fn compare(spec: &Opaque, other: &Opaque, width: u32) -> Judgement {
         });
     }
     judgement
+}
+
+/// The spec's key of a triangle at a pixel, if it covers that.
+fn key_at(primitives: &Primitives, prim: u32, pixel: u32) -> Option<u32> {
+    let known = (prim as usize) < primitives.prims.len();
+    let setup = known.then(|| Setup::new(primitives, prim)).flatten()?;
+    let (width, bits) = (primitives.size.width, primitives.bits);
+    let edges = setup.edges([sample(pixel % width, bits), sample(pixel / width, bits)]);
+    setup.covers(edges).then(|| setup.key(edges))
 }
 
 fn surface(key: u32, prim: u32) -> String {

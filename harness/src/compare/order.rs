@@ -6,6 +6,7 @@ use triptych_spec::raster::Fragment;
 use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::compare::fragments::at;
+use crate::compare::lists::certify;
 use crate::row::Class;
 
 /// Follows every list of `lists`; gives fragments list by list. Pixels count from
@@ -37,13 +38,36 @@ pub fn flatten(lists: &Lists) -> Option<Sorted> {
 }
 
 /// Compares the order of lists that hold the same fragments. A run of equal keys
-/// in another order is a broken tie; everything else is not sorted.
-pub fn compare(spec: &Sorted, other: Option<&Sorted>, width: u32) -> Judgement {
+/// in another order is a broken tie; everything else is not sorted. Lists that do
+/// not hold the same any more have the cause of `build`'s certificate: a fault, or a
+/// node that no list leads to.
+pub fn compare(spec: &Sorted, other: &Lists, width: u32) -> Judgement {
     let mut judgement = Judgement::new(Class::Tie, "fragments");
-    let Some(other) = other.filter(|o| o.offsets == spec.offsets) else {
-        judgement.differs(Cause::CorruptLink, None, || {
-            "sorting changed the number of fragments in a list".into()
+    let certificate = certify(other);
+    for fault in &certificate.faults {
+        judgement.differs(fault.cause, Some(fault.pixel), || {
+            let (at, to) = (at(fault.pixel, width), fault.address);
+            format!("{at}: after sorting a link leads to address {to}")
         });
+    }
+    // Nodes that were in no list before sorting are no concern of it.
+    let nodes = spec.fragments.len();
+    if certificate.faults.is_empty() {
+        for _ in certificate.order.len()..nodes {
+            let sorted = certificate.order.len();
+            judgement.differs(Cause::LostNode, None, || {
+                format!("{nodes} nodes were in lists before sorting, {sorted} are after it")
+            });
+        }
+    }
+    let other = flatten(other).filter(|o| o.offsets == spec.offsets);
+    let Some(other) = other.filter(|_| judgement.differ() == 0) else {
+        // Sound lists of other lengths: a node went from one list to another.
+        if judgement.differ() == 0 {
+            judgement.differs(Cause::CorruptLink, None, || {
+                "sorting changed the number of fragments in a list".into()
+            });
+        }
         return judgement;
     };
     for pixel in 0..spec.offsets.len() - 1 {

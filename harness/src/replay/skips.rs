@@ -3,11 +3,13 @@
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster;
 use triptych_spec::abuffer::Sorted;
+use triptych_spec::raster::Fragment;
 
 use super::gpu::{GpuLeg, GpuSeen};
 use super::rows::Rows;
 use crate::cause::Cause;
 use crate::compare::fragments::at;
+use crate::compare::lists::{Fault, certify};
 use crate::compare::order::words;
 use crate::compare::{Judgement, compare};
 use crate::observe::{Gpu, GpuUnskipped, Observed};
@@ -44,6 +46,11 @@ pub fn run(
     let full = Observed::<GpuUnskipped, _>::new(label, seen).taking(time);
     let skipped = skipped.map(|s| s).taking(skipped.value.time + own_stream);
     let width = leg.scene.size.width;
+    if skipped.value.sorted.is_none() {
+        let reason = "the lists are damaged, see build".to_owned();
+        rows.skip("plan", &skipped.label, &full.label, Class::Exact, reason);
+        return Ok(None);
+    }
     let judgement = compare(&skipped, &full, |a, b| judge(a, b, width));
     rows.add("plan", &skipped, &full, judgement);
     let saved = time.as_secs_f64() - (skipped.value.time + own_stream).as_secs_f64();
@@ -55,32 +62,63 @@ pub fn run(
 fn judge(skipped: &GpuSeen, full: &GpuSeen, width: u32) -> Judgement {
     let mut judgement = Judgement::new(Class::Exact, "pixels");
     let (Some(a), Some(b)) = (&skipped.sorted, &full.sorted) else {
-        judgement.differs(Cause::CorruptLink, None, || {
-            "damaged lists, see build".into()
-        });
+        judge_damage(full, &mut judgement);
         return judgement;
     };
     let images = skipped.abuffer.image.iter().zip(&full.abuffer.image);
     for (pixel, (x, y)) in (0_u32..).zip(images) {
         judgement.compared += 1;
-        if x.map(f32::to_bits) != y.map(f32::to_bits) {
-            judgement.differs(Cause::BlendRounding, Some(pixel), || {
-                format!("{} is {x:?} with skipping, {y:?} without", at(pixel, width))
-            });
-        }
         let end = full.abuffer.opaque.key[pixel as usize];
         let (a, b) = (list(a, pixel), list(b, pixel));
         let visible = b.iter().take_while(|f| f.key < end).count();
-        if *a != b[..visible] {
-            judgement.differs(Cause::LostNode, Some(pixel), || {
+        if let Some(cause) = difference(a, &b[..visible]) {
+            judgement.differs(cause, Some(pixel), || {
                 let (a, b) = (words(a), words(&b[..visible]));
                 format!("{} holds {a} with skipping, {b} without", at(pixel, width))
+            });
+        } else if x.map(f32::to_bits) != y.map(f32::to_bits) {
+            // From equal lists only: other lists give another picture.
+            judgement.differs(Cause::BlendRounding, Some(pixel), || {
+                format!("{} is {x:?} with skipping, {y:?} without", at(pixel, width))
             });
         }
     }
     judgement
 }
 
-fn list(sorted: &Sorted, pixel: u32) -> &[triptych_spec::raster::Fragment] {
+/// Why two sorted lists of a pixel differ; `None` if they do not.
+fn difference(a: &[Fragment], b: &[Fragment]) -> Option<Cause> {
+    let ordered = |list: &[Fragment]| {
+        let mut list = list.to_vec();
+        list.sort_unstable();
+        list
+    };
+    if a == b {
+        None
+    } else if ordered(a) != ordered(b) {
+        Some(Cause::LostNode)
+    } else if a.iter().map(|f| f.key).eq(b.iter().map(|f| f.key)) {
+        Some(Cause::TieOrder)
+    } else {
+        Some(Cause::SortOrder)
+    }
+}
+
+/// Lists that only the run without skipping damages: its certificates say how.
+fn judge_damage(full: &GpuSeen, judgement: &mut Judgement) {
+    let lists = full
+        .abuffer
+        .bands
+        .iter()
+        .map(|b| b.sorted.as_ref().unwrap_or(&b.built));
+    let faults = lists.flat_map(|lists| certify(lists).faults);
+    for Fault { cause, address, .. } in faults {
+        judgement.differs(cause, None, || {
+            format!("without skipping a link leads to address {address}")
+        });
+    }
+}
+
+fn list(sorted: &Sorted, pixel: u32) -> &[Fragment] {
     sorted.list(pixel as usize)
 }

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::time::Duration;
 
+use triptych_gpu::abuffer::{Abuffer, BandResult};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 use triptych_gpu::vertex;
@@ -13,7 +14,7 @@ use super::gpu::{Adapter, GpuLeg, GpuSeen};
 use super::rows::Rows;
 use super::spec::SpecRun;
 use crate::cause::Cause;
-use crate::compare::{self, Judgement, compare};
+use crate::compare::{Judgement, compare, image, lists, opaque, order};
 use crate::observe::{Gpu, Observed, Spec};
 use crate::row::Class;
 
@@ -46,7 +47,7 @@ pub fn run(
     let usable = is_usable(scene, &own.value);
     if let Some(rows) = rows {
         let mut judgement = compare(spec, &own, |_, own| {
-            compare::vertex::compare(scene, bits, own).judgement()
+            crate::compare::vertex::compare(scene, bits, own).judgement()
         });
         judgement.admitted_budget = budget;
         let spec = spec.map(|_| ()).taking(spec.value.times.vertex);
@@ -99,23 +100,42 @@ pub fn end_to_end(
     let seen = seen.map(|s| s).taking(seen.value.time);
     let width = leg.scene.size.width;
     let mut judgement = compare(leg.spec, &seen, |spec, seen: &&GpuSeen| {
-        let lists = seen
-            .abuffer
-            .bands
-            .iter()
-            .map(|b| compare::lists::compare(&leg.expected(&spec.sorted, b.band), &b.built));
-        let lists = Judgement::sum(lists);
+        let Abuffer {
+            opaque,
+            bands,
+            image,
+            ..
+        } = &seen.abuffer;
+        let build = |b: &BandResult| lists::compare(&leg.expected(&spec.sorted, b.band), &b.built);
+        let sort = |b: &BandResult| {
+            let must = triptych_spec::abuffer::sort(&b.built);
+            Some(order::compare(&must, b.sorted.as_ref()?, width))
+        };
+        // The first stage that differs has the cause; what follows from it has none.
+        let opaque = opaque::compare(&spec.opaque, opaque, &spec.primitives);
+        if opaque.differ() > 0 {
+            return opaque;
+        }
+        let mut lists = Judgement::sum(bands.iter().map(build));
+        if let (0, Some(stage)) = (lists.differ(), seen.abuffer.endless) {
+            lists.differs(Cause::Cycle, None, || {
+                format!("stage {stage} follows a list that does not end")
+            });
+        }
         if lists.differ() > 0 {
             return lists;
         }
-        let opaque = compare::opaque::compare(&spec.opaque, &seen.abuffer.opaque, width);
-        let image = compare::image::compare(&spec.image, &seen.abuffer.image, width);
+        let order = Judgement::sum(bands.iter().filter_map(sort));
+        if order.differ() > 0 {
+            return order;
+        }
+        let image = image::compare(&spec.image, image, width);
         let (class, unit, compared) = (lists.class, lists.unit, lists.compared);
         Judgement {
             class,
             unit,
             compared,
-            ..Judgement::sum([lists, opaque, image])
+            ..Judgement::sum([lists, opaque, order, image])
         }
     });
     let changed = changed(&own.value, &leg.spec.value);

@@ -13,6 +13,8 @@ pub struct Fault {
     pub cause: Cause,
     /// Where it leads.
     pub address: u32,
+    /// The pixel whose list holds that node already.
+    pub owner: Option<u32>,
 }
 
 /// The outcome of following every list.
@@ -71,10 +73,12 @@ pub fn certify(lists: &Lists) -> Certificate {
                 None => Some(Cause::CorruptLink),
             };
             if let Some(cause) = cause {
+                let owner = owner.get(address as usize).copied();
                 certificate.faults.push(Fault {
                     pixel,
                     cause,
                     address,
+                    owner: owner.filter(|other| *other != pixel),
                 });
                 break;
             }

@@ -1,6 +1,6 @@
 //! Whether the lists hold what they must.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use triptych_spec::abuffer::Lists;
 use triptych_spec::raster::Fragment;
@@ -19,12 +19,25 @@ pub fn judge(
     judgement: &mut Judgement,
 ) {
     let mut unowned = Unowned::new(lists, certificate);
+    let overflow = certificate
+        .faults
+        .iter()
+        .any(|f| f.cause == Cause::Overflow);
+    let last = lists.capacity.checked_sub(1).filter(|_| overflow);
+    let owners: BTreeSet<u32> = certificate.faults.iter().filter_map(|f| f.owner).collect();
+    let in_doubt = |pixel| {
+        let holds = |address| certificate.list(pixel).contains(&address);
+        owners.contains(&pixel) || last.is_some_and(holds)
+    };
     let mut faults = certificate.faults.iter().peekable();
     let pixels = u32::try_from(lists.heads.len()).expect("a target has fewer than 2^32 pixels");
     for pixel in 0..pixels {
         // What follows from a fault is not counted again.
         if let Some(fault) = faults.next_if(|f| f.pixel == pixel) {
             report_fault(expected, fault, judgement);
+            continue;
+        }
+        if in_doubt(pixel) {
             continue;
         }
         let mut list = List {
@@ -78,10 +91,17 @@ impl Unowned {
         }
     }
 
-    /// What is left belongs to no list that lacks it.
+    /// What is left belongs to no list that lacks it. Every fragment covers a sample:
+    /// a mask of 0 was never stored.
     fn report(&self, judgement: &mut Judgement) {
-        for ((prim, key, _), count) in &self.0 {
+        for ((prim, key, mask), count) in &self.0 {
             for _ in 0..*count {
+                if [*prim, *key, *mask] == [0; 3] {
+                    judgement.differs(Cause::Overflow, None, || {
+                        "an address was counted, but nothing is stored there".into()
+                    });
+                    continue;
+                }
                 judgement.differs(Cause::LostNode, None, || {
                     format!("a node of triangle row {prim} at key {key} is in no list")
                 });

@@ -1,8 +1,10 @@
 //! Each stage of a GPU leg against the spec, from equal inputs.
 
+use std::borrow::Cow;
+
 use triptych_gpu::abuffer;
 use triptych_gpu::frame::Band;
-use triptych_spec::abuffer::{Lists, Sorted};
+use triptych_spec::abuffer::{Lists, Opaque, Sorted};
 
 use super::{From, GpuLeg, GpuSeen};
 use crate::cause::Cause;
@@ -30,8 +32,8 @@ impl GpuLeg<'_> {
             .taking(self.spec.value.times.opaque);
         let times = seen.value.abuffer.times;
         let gpu = seen.map(|s| &s.abuffer.opaque).taking(times.opaque);
-        let width = self.scene.size.width;
-        let judgement = compare(&spec, &gpu, |a, b| compare::opaque::compare(a, b, width));
+        let prims = &self.spec.value.primitives;
+        let judgement = compare(&spec, &gpu, |a, b| compare::opaque::compare(a, b, prims));
         rows.add("opaque", &spec, &gpu, judgement);
     }
 
@@ -46,17 +48,17 @@ impl GpuLeg<'_> {
             );
             return;
         }
-        let spec = self
-            .spec
-            .map(|s| &s.sorted)
-            .taking(self.spec.value.times.build);
         let gpu = seen
             .map(|s| &s.abuffer)
             .taking(seen.value.abuffer.times.build);
+        let must = self.lists_before(&gpu.value.opaque);
+        let spec = self.spec.derive(must.as_ref());
+        let spec = spec.taking(self.spec.value.times.build);
         if !gpu.value.overflowed.is_empty() {
             let judgement = compare(&spec, &gpu, |spec, gpu| {
                 let judge = |(band, lists): &(Band, Lists)| {
-                    compare_overflowed(&self.expected(spec, *band), lists)
+                    let enough = counted(&gpu.bands, *band);
+                    compare_overflowed(&self.expected(spec, *band), lists, enough)
                 };
                 Judgement::sum(gpu.overflowed.iter().map(judge))
             });
@@ -69,6 +71,18 @@ impl GpuLeg<'_> {
             Judgement::sum(gpu.bands.iter().map(judge))
         });
         rows.add("build", &spec, &gpu, judgement);
+    }
+
+    /// From equal inputs: the lists in front of the opaque surfaces that this leg saw.
+    fn lists_before(&self, opaque: &Opaque) -> Cow<'_, Sorted> {
+        let spec = &self.spec.value;
+        let comparable = opaque.key.len() == spec.opaque.key.len();
+        if *opaque == spec.opaque || !self.plan.depth_test || !comparable {
+            return Cow::Borrowed(&spec.sorted);
+        }
+        let prims = &spec.primitives;
+        let lists = triptych_spec::abuffer::build(self.scene, prims, opaque, true, u32::MAX);
+        Cow::Owned(triptych_spec::abuffer::sort(&lists))
     }
 
     pub(super) fn judge_sort(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
@@ -101,10 +115,9 @@ impl GpuLeg<'_> {
             .taking(seen.value.abuffer.times.sort);
         let width = self.scene.size.width;
         let judgement = compare(&spec, &gpu, |must, bands| {
-            Judgement::sum(must.iter().zip(bands.iter()).map(|(must, band)| {
-                let flat = band.sorted.as_ref().and_then(compare::order::flatten);
-                compare::order::compare(must, flat.as_ref(), width)
-            }))
+            let sorted = bands.iter().filter_map(|band| band.sorted.as_ref());
+            let judge = |(must, seen)| compare::order::compare(must, seen, width);
+            Judgement::sum(must.iter().zip(sorted).map(judge))
         });
         rows.add("sort", &spec, &gpu, judgement);
     }
@@ -124,6 +137,16 @@ impl GpuLeg<'_> {
         // From equal inputs: the spec blends what this leg sorted.
         let spec = &self.spec.value;
         let abuffer = &seen.value.abuffer;
+        let coloured = |lists: &Lists| {
+            let mut nodes = lists.nodes.iter().zip(&lists.colours);
+            nodes.all(|(node, colour)| spec.faces.get(node.prim as usize) == Some(colour))
+        };
+        if !abuffer.bands.iter().all(|b| coloured(&b.built)) {
+            let reason = "the nodes hold other colours, see build".to_owned();
+            let class = Class::Interval;
+            rows.skip("resolve", &self.spec.label, &seen.label, class, reason);
+            return;
+        }
         let must = if *sorted == spec.sorted && abuffer.opaque == spec.opaque {
             spec.image.clone()
         } else {
@@ -145,4 +168,11 @@ impl GpuLeg<'_> {
             .skipped(stage)
             .or(given.then(|| "the spec's result is used (--gpu-from)".into()))
     }
+}
+
+/// Attempts in the parts of a band, once all of them had room.
+fn counted(parts: &[abuffer::BandResult], band: Band) -> u64 {
+    let rows = band.first..band.first + band.rows;
+    let within = parts.iter().filter(|b| rows.contains(&b.band.first));
+    within.map(|b| u64::from(b.built.attempts)).sum()
 }
