@@ -101,9 +101,6 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
         .iter()
         .filter(|r| r.verdict() == Verdict::Diverge);
     let mut wrong: Vec<String> = diverging.map(describe).collect();
-    if !wrong.is_empty() {
-        wrong.extend(outcome.described.iter().map(|d| format!("  {d}")));
-    }
     let gpus = adapters.iter().flat_map(|adapter| {
         let label =
             |path: &triptych_gpu::raster::Path| format!("gpu@{}/{}", adapter.gpu.name, path.name());

@@ -12,7 +12,7 @@ use triptych_spec::vertex::{GUARD, Primitives, SUBPIXEL_BITS, guard_origin};
 
 /// The coarsest grid that WebGPU's back ends allow (Vulkan: subPixelPrecisionBits
 /// is at least 4).
-const BITS_MIN: u32 = 4;
+pub const BITS_MIN: u32 = 4;
 
 /// What a driver's rasteriser turned out to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
