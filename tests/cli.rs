@@ -10,6 +10,8 @@ mod corpus;
 mod mistakes;
 #[path = "cli/output.rs"]
 mod output;
+#[path = "cli/outside.rs"]
+mod outside;
 #[path = "cli/results.rs"]
 mod results;
 

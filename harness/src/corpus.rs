@@ -1,5 +1,8 @@
 //! Finding scenes: the corpus, and files outside it.
 
+mod name;
+
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::error::InputError;
@@ -7,7 +10,8 @@ use crate::error::InputError;
 /// A scene that can be replayed.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Entry {
-    /// `family/case` in the corpus; the file's stem outside it.
+    /// `family/case` in the corpus; outside it the file's stem, or as much of its
+    /// path as tells it apart.
     pub name: String,
     /// `raster` or `abuffer`; files outside the corpus count as `abuffer`, the
     /// family that runs every stage.
@@ -85,7 +89,7 @@ fn folders(at: &Path) -> Result<Vec<String>, InputError> {
 
 /// The entries that any pattern selects, each once; all of them without a
 /// pattern. A pattern is a part of a name, or with `exact` the whole name; or the
-/// path of a scene.toml, of its folder, or of a bare mesh.
+/// path of a scene.toml, of its folder, or of a bare mesh. No two have one name.
 ///
 /// # Errors
 /// A pattern that selects nothing.
@@ -109,8 +113,9 @@ pub fn select(
             selected.push(outside(entries, pattern)?);
         }
     }
-    let mut seen = std::collections::BTreeSet::new();
-    selected.retain(|e| seen.insert(e.path.clone()));
+    let mut seen = BTreeSet::new();
+    selected.retain(|e| seen.insert(place(&e.path)));
+    name::tell_apart(entries, &mut selected)?;
     Ok(selected)
 }
 
@@ -128,33 +133,31 @@ fn outside(entries: &[Entry], pattern: &str) -> Result<Entry, InputError> {
         let message = "matches no scene of the corpus (see `triptych list`) and is no file";
         return Err(InputError::new(given, message));
     }
-    let same = |e: &&Entry| match (e.path.canonicalize(), path.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
-    if let Some(entry) = entries.iter().find(same) {
+    let here = place(&path);
+    if let Some(entry) = entries.iter().find(|e| place(&e.path) == here) {
         return Ok(entry.clone());
     }
-    Ok(Entry {
-        name: name_outside(&path),
-        family: "abuffer".to_owned(),
-        path,
-    })
+    Ok(Entry::outside(&path))
 }
 
-/// The name of a scene outside the corpus: its folder for a scene.toml, its stem
-/// otherwise.
-pub fn name_outside(path: &Path) -> String {
-    let named = match (path.file_name(), path.parent()) {
-        (Some(file), Some(folder)) if file == "scene.toml" => folder.file_name().or(Some(file)),
-        (file, _) => file,
-    };
-    let name = named.map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
-    let stem = name.split('.').next().unwrap_or_default();
-    if stem.is_empty() {
-        name.into_owned()
-    } else {
-        stem.to_owned()
+impl Entry {
+    /// A scene outside the corpus, as if it were the only one.
+    pub fn outside(path: &Path) -> Self {
+        Self {
+            name: name::stem(&place(path)),
+            family: "abuffer".to_owned(),
+            path: path.to_owned(),
+        }
+    }
+}
+
+/// Where a file lies, however one gets there. A file that is a link stays what it
+/// is: meshes and materials are looked for beside the link.
+fn place(path: &Path) -> PathBuf {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    match (whole.parent().map(Path::canonicalize), whole.file_name()) {
+        (Some(Ok(folder)), Some(file)) => folder.join(file),
+        _ => whole,
     }
 }
 

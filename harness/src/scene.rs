@@ -98,12 +98,7 @@ pub enum LoadError {
 /// # Errors
 /// See [`LoadError`].
 pub fn load(path: &Path) -> Result<Loaded, LoadError> {
-    let entry = Entry {
-        name: corpus::name_outside(path),
-        family: "abuffer".to_owned(),
-        path: path.to_owned(),
-    };
-    load_entry(&entry, None)
+    load_entry(&Entry::outside(path), None)
 }
 
 /// Loads a scene; `seed` takes the place of the scene's own.
@@ -163,6 +158,9 @@ impl Parsed<'_> {
 /// # Errors
 /// A file that cannot be read or parsed.
 pub fn purpose(path: &Path) -> Result<String, InputError> {
+    if corpus::is_mesh(path) {
+        return Ok(parse(path, BARE)?.file.purpose.0);
+    }
     let bytes = crate::mesh::read(path, FILE_MAX)?;
     Ok(parse(path, utf8(path, &bytes)?)?.file.purpose.0)
 }

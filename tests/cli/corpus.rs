@@ -19,6 +19,9 @@ fn list_names_every_scene_with_its_purpose() {
     );
     let exact = place.run(&["list", "--exact", "raster/quads"]).expect(0);
     assert_eq!(exact.stdout, one.stdout);
+    place.write("shape.obj", "v 0 0 0\n");
+    let mesh = place.run(&["list", "shape.obj"]).expect(0);
+    assert_eq!(mesh.stdout, "shape  a mesh by itself, seen whole\n");
 }
 
 #[test]

@@ -30,14 +30,14 @@ const ROW: [&str; 17] = [
 ];
 const SUMMARY: [&str; 5] = ["scenes", "compared", "unexplained", "skipped", "seconds"];
 
-fn json(path: &Path) -> Vec<Value> {
+pub fn json(path: &Path) -> Vec<Value> {
     let text = fs::read_to_string(path).expect("the file was written");
     assert!(text.ends_with('\n'), "the last line is whole");
     let line = |l: &str| serde_json::from_str(l).unwrap_or_else(|e| panic!("{e}: {l}"));
     text.lines().map(line).collect()
 }
 
-fn count(value: &Value, field: &str) -> u64 {
+pub fn count(value: &Value, field: &str) -> u64 {
     value[field]
         .as_u64()
         .unwrap_or_else(|| panic!("{field} of {value} is no count"))
