@@ -5,7 +5,10 @@
 use std::mem::{offset_of, size_of};
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use naga::{AddressSpace, Expression, Literal, Module, ShaderStage, StorageAccess, TypeInner};
+use naga::{
+    AddressSpace, BinaryOperator, Expression, Function, Literal, Module, ScalarKind, ShaderStage,
+    StorageAccess, TypeInner,
+};
 use triptych_gpu::abuffer::{PROGRESS, STEPS};
 use triptych_gpu::frame::{Frame, WORKGROUP};
 use triptych_gpu::raster::SATURATED;
@@ -228,6 +231,45 @@ fn baseline_programs_need_no_capability() {
         let expects_wide = root.native && !root.name.starts_with("vertex");
         assert_eq!(has_wide, expects_wide, "64-bit integers in {}", root.name);
     }
+}
+
+/// Vertices are placed by what WGSL rounds correctly, products and conversions: a
+/// quotient and most functions may be off even where they have an exact value.
+#[test]
+fn vertices_are_placed_without_inexact_operations() {
+    let mut seen = 0;
+    for root in programs() {
+        let (module, info) = (&root.program.module, &root.program.info);
+        let entries = module.entry_points.iter().enumerate();
+        let entries = entries.filter(|(_, e)| e.stage == ShaderStage::Vertex);
+        let entries = entries.map(|(n, e)| (&e.function, info.get_entry_point(n)));
+        let shared = module.functions.iter().map(|(h, f)| (f, &info[h]));
+        let shared = shared.filter(|(f, _)| f.name.as_deref() == Some("power_of_half"));
+        for (function, info) in entries.chain(shared) {
+            let inexact = |(at, expression): &(naga::Handle<Expression>, &Expression)| {
+                let kind = info[*at].ty.inner_with(&module.types).scalar_kind();
+                let quotient = matches!(
+                    expression,
+                    Expression::Binary {
+                        op: BinaryOperator::Divide | BinaryOperator::Modulo,
+                        ..
+                    }
+                );
+                let math = matches!(expression, Expression::Math { .. });
+                kind == Some(ScalarKind::Float) && (quotient || math)
+            };
+            let found = function.expressions.iter().find(inexact);
+            let name = |f: &Function| f.name.clone().unwrap_or("the vertex stage".into());
+            assert!(
+                found.is_none(),
+                "{} of {}: {found:?}",
+                name(function),
+                root.name
+            );
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 8, "two functions in two programs of two forms each");
 }
 
 #[test]

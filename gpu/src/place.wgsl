@@ -7,15 +7,28 @@ struct Placed {
     @location(0) @interpolate(flat) prim: u32,
 }
 
-// The viewport is the guard rectangle: a power of two on a side, so normalised
-// device coordinates of grid points are exact, and the driver, which snaps to the
-// same grid or a finer one, neither rounds nor clips. Depth is not used.
+// Half the guard in sub-pixels, the length 1 of normalised device coordinates, is
+// 2^(11 + bits).
+const HALF_GUARD_EXPONENT: u32 = 11u;
+const_assert GUARD == 2i << HALF_GUARD_EXPONENT;
+
+// 2^-n for n up to 126, from the bits of an f32. WGSL lets a quotient be off by 2.5
+// units even where it has an exact value; a bitcast is exact by definition.
+fn power_of_half(n: u32) -> f32 {
+    return bitcast<f32>((127u - n) << 23u);
+}
+
+// The viewport is the guard rectangle: a power of two on a side. So normalised
+// device coordinates of grid points are exact: integers of 20 bits, which convert
+// exactly, times a power of two, and WGSL rounds a product to the exact value if
+// there is one. The driver, which snaps to the same grid or a finer one, neither
+// rounds nor clips. Depth is not used.
 @vertex
 fn place(@builtin(vertex_index) index: u32) -> Placed {
     let prim = work[frame.work_first + index / 3u].x;
     let at = corner(prim, index % 3u);
     let middle = (vec2(frame.guard_x, frame.guard_y) + GUARD / 2) << vec2(frame.bits);
-    let scale = 2.0 / f32(GUARD << frame.bits);
+    let scale = power_of_half(HALF_GUARD_EXPONENT + frame.bits);
     let ndc = vec2<f32>(at.xy - middle) * vec2(scale, -scale);
     return Placed(vec4(ndc, 0.5, 1.0), prim);
 }
