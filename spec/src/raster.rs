@@ -2,9 +2,11 @@
 //!
 //! Integer edge functions with the top-left rule (Pineda 1988), depth as the floor
 //! of an exact rational number. With the guard rectangle of 2^12 pixels and at
-//! most 8 sub-pixel bits, coordinates span L = 2^20, edge functions at most
-//! L^2 = 2^40, and depth numerators at most 2^71: `i64` and `i128` hold them.
-//! Twin: `gpu/src/raster.wgsl`.
+//! most 8 sub-pixel bits, coordinates span L = 2^20. An edge and a sample, also one
+//! outside the triangle, are corners of a triangle within that square, which has at
+//! most half its area: an edge function is at most L^2 = 2^40 in size. Where none is
+//! negative their sum is the area, so depth numerators stay below 2^71. `i64` and
+//! `i128` hold them. Twin: `gpu/src/raster.wgsl`.
 
 use crate::scene::Size;
 use crate::vertex::Primitives;

@@ -6,6 +6,7 @@ mod partition;
 use proptest::prelude::*;
 use triptych_spec::raster::{Fragment, Setup, count};
 use triptych_spec::scene::Size;
+use triptych_spec::vertex::{DEPTH_ONE, GUARD, guard_origin};
 
 use super::config;
 use super::grid::{Triangle, fragments, primitives, samples, soup, triangle, triangles};
@@ -52,6 +53,39 @@ fn anonymous(fragments: &[Fragment]) -> Vec<[u32; 3]> {
 fn one_triangle() -> impl Strategy<Value = (Size, u32, Triangle)> {
     (super::grid::size(), 1_u32..=8)
         .prop_flat_map(|(size, bits)| (Just(size), Just(bits), triangle(size, bits)))
+}
+
+/// An edge function is linear in each coordinate of its edge and of the sample, so
+/// over all that lies in the guard rectangle it is extreme where all are at its ends.
+#[test]
+fn edge_functions_are_at_most_the_square_of_the_guard() {
+    let (size, bits) = (
+        Size {
+            width: 2048,
+            height: 2048,
+        },
+        8,
+    );
+    let low = guard_origin(2048) << bits;
+    let ends = [low, low + (GUARD << bits)];
+    let square: Vec<[i32; 2]> = (0..4).map(|i| [ends[i & 1], ends[i >> 1]]).collect();
+    let mut largest = 0;
+    for number in 0..4 * 4 * 4 {
+        let corners = [number & 3, number >> 2 & 3, number >> 4].map(|i| {
+            let [x, y] = square[i];
+            [x, y, DEPTH_ONE]
+        });
+        let Some(setup) = Setup::new(&primitives(size, bits, &[corners]), 0) else {
+            continue;
+        };
+        for point in &square {
+            for edge in setup.edges(point.map(i64::from)) {
+                largest = largest.max(edge.abs());
+            }
+        }
+        largest = largest.max(setup.area);
+    }
+    assert_eq!(largest, 1 << 40, "the bound is reached, not exceeded");
 }
 
 proptest! {

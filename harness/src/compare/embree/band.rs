@@ -111,7 +111,7 @@ impl<E: RayHits> Sweep<'_, E> {
             if c.rows.contains(&row) {
                 // With E the least edge function, negative, the sum of all is at
                 // most area + 4 |E|, so class edge ends at |E| = area 2^-22
-                // (1 + 2^-19), which is below this as area is at most 2^41.
+                // (1 + 2^-19), which is below this as area is at most 2^40.
                 let least = -(c.setup.area >> EDGE_BITS) - 3;
                 let span = c
                     .setup
