@@ -3,7 +3,10 @@
 //! Content-addressed: a leg's key is the SHA-256 of everything that it depends on:
 //! this binary, the scene with its meshes and seed, the options, the adapter with
 //! its driver's version and libraries, Embree's library. Only what agrees is kept,
-//! so that a divergence is always seen afresh.
+//! so that a divergence is always seen afresh. What depends on code whose bytes
+//! cannot be read has no key, and is not kept either.
+
+mod code;
 
 use std::fs;
 use std::io;
@@ -15,6 +18,8 @@ use sha2::{Digest, Sha256};
 
 use crate::report::Picture;
 use crate::row::{Row, Verdict};
+use code::Code;
+pub use code::Uses;
 
 /// Entries that no run has used for so long are removed.
 const KEPT: Duration = Duration::from_secs(30 * 24 * 3600);
@@ -34,32 +39,45 @@ pub struct Unit {
 #[derive(Clone, Debug)]
 pub struct Cache {
     dir: PathBuf,
-    /// Hash of the code: this binary and the libraries that it has loaded.
-    code: String,
+    binary: Code,
+    libraries: Vec<Code>,
 }
 
 impl Cache {
     /// A cache in a folder, which is made. Call it once all libraries are loaded.
     ///
     /// # Errors
-    /// A folder that cannot be made or read, a library that cannot be read.
+    /// A folder that cannot be made or read.
     pub fn open(dir: &Path) -> io::Result<Self> {
         fs::create_dir_all(dir)?;
         prune(dir)?;
         Ok(Self {
             dir: dir.to_owned(),
-            code: code()?,
+            binary: Code::binary()?,
+            libraries: Code::libraries(),
         })
     }
 
-    /// The key of a unit with these inputs.
-    pub fn key(&self, inputs: &[&str]) -> String {
+    /// What cannot be kept, and why: a line each.
+    pub fn remarks(&self) -> impl Iterator<Item = String> {
+        let all = std::iter::once(&self.binary).chain(&self.libraries);
+        all.filter_map(Code::remark)
+    }
+
+    /// The key of a unit with these inputs; `None` if it depends on code that cannot be
+    /// read.
+    pub fn key(&self, uses: Uses<'_>, inputs: &[&str]) -> Option<String> {
         let mut digest = Sha256::new();
-        for part in std::iter::once(&self.code.as_str()).chain(inputs) {
+        let mut part = |part: &str| {
             digest.update(part.len().to_le_bytes());
             digest.update(part.as_bytes());
+        };
+        part(self.binary.hash()?);
+        for library in self.libraries.iter().filter(|l| l.serves(uses)) {
+            part(library.hash()?);
         }
-        hex(&digest.finalize())
+        inputs.iter().for_each(|input| part(input));
+        Some(hex(&digest.finalize()))
     }
 
     /// What is kept under a key, its rows marked as cached. Whatever is damaged is
@@ -126,43 +144,6 @@ fn prune(dir: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Hash of this binary and of the drivers and tracers that it has loaded.
-fn code() -> io::Result<String> {
-    let mut digest = Sha256::new();
-    hash_file(&std::env::current_exe()?, &mut digest)?;
-    for library in libraries() {
-        hash_file(&library, &mut digest)?;
-    }
-    Ok(hex(&digest.finalize()))
-}
-
-/// Loaded libraries that compute results, in order. Linux tells; elsewhere the
-/// drivers' versions in the key must do.
-fn libraries() -> Vec<PathBuf> {
-    const COMPUTES: [&str; 7] = [
-        "embree", "tbb", "vulkan", "vk_", "LLVM", "nvidia", "gallium",
-    ];
-    let maps = fs::read_to_string("/proc/self/maps").unwrap_or_default();
-    let mut paths: Vec<PathBuf> = maps
-        .lines()
-        .filter_map(|line| line.find('/').map(|at| PathBuf::from(&line[at..])))
-        .filter(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.contains(".so") && COMPUTES.iter().any(|part| name.contains(part))
-        })
-        .collect();
-    paths.sort();
-    paths.dedup();
-    paths
-}
-
-fn hash_file(path: &Path, digest: &mut Sha256) -> io::Result<()> {
-    let bytes =
-        fs::read(path).map_err(|e| io::Error::new(e.kind(), format!("{}: {e}", path.display())))?;
-    digest.update(bytes);
-    Ok(())
-}
-
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
@@ -180,6 +161,11 @@ mod tests {
         Cache::open(&dir).expect("a folder in the temporary folder")
     }
 
+    fn spec_key(cache: &Cache, inputs: &[&str]) -> String {
+        let key = cache.key(Uses::Nothing, inputs);
+        key.expect("this binary can be read")
+    }
+
     fn unit(differ: u64) -> Unit {
         let mut rows = Rows::new("raster/x", "raster");
         rows.skip("cover", "spec", "gpu", Class::Exact, "nothing".into());
@@ -193,13 +179,13 @@ mod tests {
     #[test]
     fn what_agrees_comes_back_marked() {
         let cache = cache("agrees");
-        let key = cache.key(&["scene", "leg"]);
+        let key = spec_key(&cache, &["scene", "leg"]);
         assert_eq!(cache.get(&key), None, "nothing is kept yet");
         cache.put(&key, &unit(0)).expect("written");
         let back = cache.get(&key).expect("kept");
         assert!(back.rows[0].cached, "rows from the cache say so");
         assert_eq!(
-            cache.get(&cache.key(&["scene", "other"])),
+            cache.get(&spec_key(&cache, &["scene", "other"])),
             None,
             "another leg is another key"
         );
@@ -208,7 +194,7 @@ mod tests {
     #[test]
     fn what_diverges_is_not_kept() {
         let cache = cache("diverges");
-        let key = cache.key(&["scene"]);
+        let key = spec_key(&cache, &["scene"]);
         cache.put(&key, &unit(1)).expect("no error");
         assert_eq!(cache.get(&key), None, "a divergence is seen afresh");
     }
@@ -216,7 +202,7 @@ mod tests {
     #[test]
     fn a_damaged_entry_is_not_there() {
         let cache = cache("damaged");
-        let key = cache.key(&["scene"]);
+        let key = spec_key(&cache, &["scene"]);
         cache.put(&key, &unit(0)).expect("written");
         fs::write(cache.dir.join(&key).join(UNIT), b"{").expect("damaged");
         assert_eq!(cache.get(&key), None, "half an entry is none");
@@ -226,9 +212,53 @@ mod tests {
     fn parts_of_a_key_do_not_run_together() {
         let cache = cache("parts");
         assert_ne!(
-            cache.key(&["ab", "c"]),
-            cache.key(&["a", "bc"]),
+            spec_key(&cache, &["ab", "c"]),
+            spec_key(&cache, &["a", "bc"]),
             "lengths are hashed"
         );
+    }
+
+    #[test]
+    fn only_what_depends_on_an_unreadable_library_has_no_key() {
+        const LLVMPIPE: Uses<'_> = Uses::Driver("llvmpipe (LLVM 15) llvmpipe Mesa 22");
+        const SWIFT: Uses<'_> = Uses::Driver("SwiftShader Device SwiftShader driver");
+        const OTHER: Uses<'_> = Uses::Driver("some board");
+        let all = [Uses::Nothing, Uses::Embree, LLVMPIPE, SWIFT, OTHER];
+        let keyed = |library: &str| {
+            let mut cache = cache("unreadable");
+            let maps = format!("0-1 r-xp 0 00:01 7 /no-such-folder/{library} (deleted)");
+            cache.libraries = Code::mapped(&maps);
+            assert_eq!(cache.remarks().count(), cache.libraries.len(), "{library}");
+            all.map(|uses| cache.key(uses, &["scene"]).is_some())
+        };
+        let expected = [
+            ("libc.so.6", [true, true, true, true, true]),
+            ("libembree4.so.4", [true, false, true, true, true]),
+            ("libtbb.so.12", [true, false, true, true, true]),
+            ("libvulkan_lvp.so", [true, true, false, true, false]),
+            ("libvk_swiftshader.so", [true, true, true, false, false]),
+            ("libGLX_nvidia.so.0", [true, true, true, true, false]),
+            ("libvulkan.so.1", [true, true, false, false, false]),
+            ("libLLVM-15.so.1", [true, true, false, false, false]),
+        ];
+        for (library, has_key) in expected {
+            assert_eq!(keyed(library), has_key, "spec, embree, drivers: {library}");
+        }
+    }
+
+    #[test]
+    fn a_key_knows_the_libraries_that_its_work_uses() {
+        let mut cache = cache("libraries");
+        let library = cache.dir.join("libembree4.so.4");
+        let maps = format!("0-1 r-xp 0 00:01 7 {}", library.display());
+        let mut keys = |bytes: &[u8]| {
+            fs::write(&library, bytes).expect("written");
+            cache.libraries = Code::mapped(&maps);
+            [Uses::Embree, Uses::Nothing].map(|uses| cache.key(uses, &["scene"]))
+        };
+        let ([old, spec_old], [new, spec_new]) = (keys(b"old"), keys(b"new"));
+        assert!(old.is_some() && new.is_some(), "both can be read");
+        assert_ne!(old, new, "another Embree is another key");
+        assert_eq!(spec_old, spec_new, "the spec does not use it");
     }
 }

@@ -112,6 +112,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         None => None,
     };
     let mut reporter = Reporter::new(selected.len()).with_options(args.again());
+    for remark in options.cache.iter().flat_map(Cache::remarks) {
+        reporter.remark(&remark)?;
+    }
     let (mut rows, mut scenes, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
     for entry in &selected {
         reporter.scene_started(&entry.name);

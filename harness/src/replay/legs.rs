@@ -9,6 +9,7 @@ use super::gpu::{Adapter, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::{pictures, skips, vertex};
+use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
@@ -47,7 +48,8 @@ impl Run<'_> {
                 &grid,
                 &measures,
             ];
-            self.unit(&inputs, |run| run.leg(adapter, path))?;
+            let words = format!("{name} {driver}");
+            self.unit(Uses::Driver(&words), &inputs, |run| run.leg(adapter, path))?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use super::gpu::Adapter;
 use super::rows::Rows;
 use super::spec::{SpecRun, timed};
 use super::{Options, Outcome, embree, pictures};
-use crate::cache::Unit;
+use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
@@ -63,9 +63,9 @@ impl<'a> Run<'a> {
     }
 
     pub(super) fn all(mut self) -> Result<Outcome, Stop> {
-        self.unit(&["spec"], Self::spec_alone)?;
+        self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
         if self.options.embree {
-            self.unit(&["embree"], Self::embree)?;
+            self.unit(Uses::Embree, &["embree"], Self::embree)?;
         }
         if self.options.gpu {
             self.gpu()?;
@@ -93,10 +93,11 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Does a piece of work, or takes its result from the cache. `inputs` are what it
-    /// depends on beside the scene, the options and the code.
+    /// Does a piece of work, or takes its result from the cache. `uses` and `inputs` are
+    /// what it depends on beside the scene, the options and this binary.
     pub(super) fn unit(
         &mut self,
+        uses: Uses<'_>,
         inputs: &[&str],
         work: impl FnOnce(&mut Self) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
@@ -122,7 +123,9 @@ impl<'a> Run<'a> {
             &options,
         ];
         all.extend(inputs);
-        let key = cache.key(&all);
+        let Some(key) = cache.key(uses, &all) else {
+            return work(self);
+        };
         if let Some(unit) = cache.get(&key) {
             self.rows.rows.extend(unit.rows);
             self.pictures.extend(unit.pictures);
