@@ -15,7 +15,7 @@
 //!    Where there is an `overflow`, a list that holds the last node is not judged: a
 //!    store beyond the end may land there (WGSL leaves open where it goes).
 //! 2. A fragment that the list lacks is `lost-node` if a node that no list leads to
-//!    holds it, else `coverage`.
+//!    holds it, and does not link to another pixel's list; else `coverage`.
 //! 3. A fragment that the list holds too often is `duplicate` if it belongs there
 //!    once; with another key than the spec's `depth-key`, with another mask
 //!    `sample-mask`, with another colour `interval`; else `coverage`.
@@ -27,6 +27,9 @@
 
 mod certificate;
 mod membership;
+#[cfg(test)]
+mod tests;
+mod unowned;
 
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::raster::Fragment;

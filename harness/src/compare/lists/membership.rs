@@ -1,10 +1,11 @@
 //! Whether the lists hold what they must.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use triptych_spec::abuffer::Lists;
 use triptych_spec::raster::Fragment;
 
+use super::unowned::Unowned;
 use super::{Certificate, Expected, Fault};
 use crate::cause::Cause;
 use crate::compare::Judgement;
@@ -52,7 +53,7 @@ pub fn judge(
     }
     // With faults about, a node may be unowned because a link went astray.
     if certificate.faults.is_empty() {
-        unowned.report(judgement);
+        unowned.report(expected, judgement);
     }
 }
 
@@ -65,49 +66,6 @@ fn report_fault(expected: &Expected<'_>, fault: &Fault, judgement: &mut Judgemen
             fault.address
         )
     });
-}
-
-/// Nodes that no list leads to, counted by what they hold.
-struct Unowned(BTreeMap<(u32, u32, u32), u64>);
-
-impl Unowned {
-    fn new(lists: &Lists, certificate: &Certificate) -> Self {
-        let mut counts = BTreeMap::new();
-        for &address in &certificate.unowned {
-            let node = lists.nodes[address as usize];
-            *counts.entry((node.prim, node.key, node.mask)).or_default() += 1;
-        }
-        Self(counts)
-    }
-
-    /// Takes one node that holds `f`, if there is one.
-    fn take(&mut self, f: &Fragment) -> bool {
-        match self.0.get_mut(&(f.prim, f.key, f.mask)) {
-            Some(count) if *count > 0 => {
-                *count -= 1;
-                true
-            }
-            _ => false,
-        }
-    }
-
-    /// What is left belongs to no list that lacks it. Every fragment covers a sample:
-    /// a mask of 0 was never stored.
-    fn report(&self, judgement: &mut Judgement) {
-        for ((prim, key, mask), count) in &self.0 {
-            for _ in 0..*count {
-                if [*prim, *key, *mask] == [0; 3] {
-                    judgement.differs(Cause::Overflow, None, || {
-                        "an address was counted, but nothing is stored there".into()
-                    });
-                    continue;
-                }
-                judgement.differs(Cause::LostNode, None, || {
-                    format!("a node of triangle row {prim} at key {key} is in no list")
-                });
-            }
-        }
-    }
 }
 
 /// A pixel's fragments and colours in order of triangle.
@@ -153,7 +111,7 @@ impl List<'_, '_> {
         }
         let Some(unowned) = unowned else { return };
         for (f, _) in must.iter().zip(&here).filter(|(_, here)| !**here) {
-            if unowned.take(f) {
+            if unowned.take(self.pixel, f) {
                 self.differs(
                     Cause::LostNode,
                     f,

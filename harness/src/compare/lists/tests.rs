@@ -1,0 +1,112 @@
+use triptych_spec::abuffer::{EOL, Lists, Node, Sorted};
+use triptych_spec::raster::Fragment;
+
+use super::{Expected, compare};
+use crate::cause::Cause;
+use crate::compare::Judgement;
+
+/// First pixel of the band: the band's own pixels count from 0.
+const FIRST: u32 = 4;
+
+/// Two triangles parallel to the screen: the same keys in every pixel.
+const KEYS: [u32; 2] = [5, 7];
+
+fn node(prim: usize, next: u32) -> Node {
+    Node {
+        key: KEYS[prim],
+        next,
+        prim: u32::try_from(prim).expect("one of two"),
+        mask: 1,
+    }
+}
+
+/// Judges a band of two pixels, both covered by both triangles, in one row of six.
+fn judge(heads: [u32; 2], nodes: Vec<Node>) -> Judgement {
+    let fragment = |pixel, prim: u32| Fragment {
+        pixel,
+        prim,
+        key: KEYS[prim as usize],
+        mask: 1,
+    };
+    let pixels = [FIRST, FIRST + 1];
+    let sorted = Sorted {
+        offsets: vec![0, 0, 0, 0, 0, 2, 4],
+        fragments: pixels
+            .iter()
+            .flat_map(|p| [fragment(*p, 0), fragment(*p, 1)])
+            .collect(),
+    };
+    let expected = Expected {
+        sorted: &sorted,
+        first_pixel: FIRST,
+        faces: &[[0.0; 4]; 2],
+        width: 6,
+    };
+    let stored = u32::try_from(nodes.len()).expect("few");
+    let lists = Lists {
+        heads: heads.to_vec(),
+        colours: vec![[0.0; 4]; nodes.len()],
+        nodes,
+        attempts: stored,
+        capacity: 8,
+    };
+    compare(&expected, &lists)
+}
+
+#[test]
+fn sound_lists_agree() {
+    let nodes = vec![node(0, EOL), node(0, EOL), node(1, 0), node(1, 1)];
+    let judgement = judge([2, 3], nodes);
+    assert_eq!((judgement.differ(), judgement.compared), (0, 4));
+}
+
+/// A triangle that does not reach the first pixel, and a node that the second loses:
+/// each pixel has its own cause, though the fragments are alike.
+#[test]
+fn a_lost_node_stands_for_its_own_pixel() {
+    let nodes = vec![node(0, EOL), node(0, EOL), node(1, 1)];
+    let judgement = judge([0, 1], nodes);
+    let marks = [(FIRST, Cause::Coverage), (FIRST + 1, Cause::LostNode)];
+    assert_eq!(judgement.marks, marks, "{judgement:#?}");
+}
+
+/// The second pixel lacks nothing, but one of its fragments was stored twice, once out
+/// of reach: no excuse for what the first pixel lacks.
+#[test]
+fn a_stray_node_does_not_stand_for_another_pixel() {
+    let nodes = vec![node(0, EOL), node(0, EOL), node(1, 1), node(1, 2)];
+    let judgement = judge([0, 2], nodes);
+    let marks = [(FIRST, Cause::Coverage), (FIRST + 1, Cause::LostNode)];
+    assert_eq!(judgement.marks, marks, "{judgement:#?}");
+}
+
+/// Links are followed through other nodes that are out of reach.
+#[test]
+fn a_chain_of_lost_nodes_is_of_the_pixel_where_it_ends() {
+    let nodes = vec![node(0, EOL), node(1, 0), node(0, 1), node(1, 2)];
+    let judgement = judge([0, EOL], nodes);
+    // The chain 3, 2, 1 ends in the first pixel's list, which lacks one of the three.
+    let causes = [(Cause::Coverage, 2), (Cause::LostNode, 3)];
+    assert_eq!(judgement.causes, causes.into(), "{judgement:#?}");
+}
+
+/// Where no link tells, a node may be of any pixel that lacks it, but of one only.
+#[test]
+fn a_node_of_no_known_pixel_stands_for_one_fragment() {
+    let nodes = vec![node(0, EOL), node(0, EOL), node(1, EOL)];
+    let judgement = judge([0, 1], nodes);
+    let causes = [(Cause::Coverage, 1), (Cause::LostNode, 1)];
+    assert_eq!(judgement.causes, causes.into(), "{judgement:#?}");
+}
+
+/// Links in a circle, and links out of bounds, lead to no pixel, and to an end.
+#[test]
+fn circles_out_of_reach_are_of_no_known_pixel() {
+    let nodes = vec![node(0, EOL), node(0, 2), node(1, 1), node(1, 77)];
+    let judgement = judge([0, EOL], nodes);
+    assert_eq!(
+        judgement.causes,
+        [(Cause::LostNode, 3)].into(),
+        "{judgement:#?}"
+    );
+}
