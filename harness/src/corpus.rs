@@ -141,6 +141,15 @@ fn outside(entries: &[Entry], pattern: &str) -> Result<Entry, InputError> {
 }
 
 impl Entry {
+    /// What selects this scene alone by `--exact`: its name in the corpus, its file
+    /// outside it.
+    pub fn argument(&self, corpus: &[Self]) -> String {
+        match corpus.contains(self) {
+            true => self.name.clone(),
+            false => self.path.to_string_lossy().into_owned(),
+        }
+    }
+
     /// A scene outside the corpus, as if it were the only one.
     pub fn outside(path: &Path) -> Self {
         Self {

@@ -1,11 +1,9 @@
-//! Rows drawn together for people: by pair of legs, by stage and leg, and the
-//! command that runs one row again.
+//! Rows drawn together for people: by pair of legs, by stage and leg.
 
 use std::collections::BTreeMap;
 
 use crate::cause::Cause;
 use crate::row::{Row, Verdict};
-use crate::text::shell_word;
 
 /// All stages of one scene between the same two legs.
 #[derive(Clone, Debug, PartialEq)]
@@ -204,45 +202,6 @@ pub fn leg_parts(label: &str) -> (&str, Option<&str>, Option<&str>) {
         Some((adapter, path)) => (leg, Some(adapter), Some(path)),
         None => (leg, Some(rest), None),
     }
-}
-
-/// The command that replays just the scene and legs of a row. `options` are those
-/// of the run that change results, such as `--no-skip`, ready for a shell.
-pub fn rerun(row: &Row, options: &str) -> String {
-    let (a, b) = (leg_parts(&row.a), leg_parts(&row.b));
-    let mut words = Vec::new();
-    // A path may carry options of its own, such as `compute --no-skip`.
-    let path = |label: Option<_>| label.and_then(|p: &str| p.split(' ').next());
-    let (path_a, path_b) = (path(a.2), path(b.2));
-    // One path can be asked for, or all.
-    let one_path = path_a.is_none() || path_b.is_none() || path_a == path_b;
-    for ((leg, adapter, _), path) in [(a, path_a), (b, path_b)] {
-        let path = path.filter(|_| one_path);
-        // The spec and closed forms always take part.
-        let leg = ["gpu", "embree"].contains(&leg).then_some(leg);
-        for (option, value) in [("--leg", leg), ("--adapter", adapter), ("--path", path)] {
-            let word = value.map(|v| format!("{option} {}", shell_word(v)));
-            words.extend(word.filter(|w| !words.contains(w)));
-        }
-    }
-    if !options.is_empty() {
-        words.push(options.to_owned());
-    }
-    replay(&row.scene, &words.join(" "))
-}
-
-/// The command that replays a scene, with options ready for a shell.
-pub fn replay(scene: &str, options: &str) -> String {
-    let mut words = vec!["cargo triptych replay --exact"];
-    if !options.is_empty() {
-        words.push(options);
-    }
-    if scene.starts_with('-') {
-        words.push("--");
-    }
-    let scene = shell_word(scene);
-    words.push(&scene);
-    words.join(" ")
 }
 
 #[cfg(test)]

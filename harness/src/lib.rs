@@ -1,6 +1,7 @@
 //! The harness: corpus, legs, comparison, report. The binary `triptych` is a thin
 //! command line over this library.
 
+pub mod again;
 pub mod cache;
 pub mod calibrate;
 pub mod cause;

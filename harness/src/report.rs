@@ -13,6 +13,7 @@ mod index;
 mod rows;
 mod scene;
 
+use std::borrow::Cow;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -21,6 +22,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::again::Again;
 use crate::digest;
 use crate::json::Merged;
 use crate::picture::Image;
@@ -80,8 +82,6 @@ pub struct SceneReport {
     pub plan: Vec<PlanLine>,
     /// The first differences.
     pub differences: Vec<Difference>,
-    /// The command that replays this scene alone.
-    pub replay_command: String,
 }
 
 /// A picture with its title, such as the label of a leg.
@@ -130,6 +130,21 @@ impl From<String> for Difference {
 }
 
 impl SceneReport {
+    /// The commands that replay this scene alone: one, or one for each run that was
+    /// merged and that asked for something else.
+    fn again(&self) -> Vec<Cow<'_, str>> {
+        let mut commands: Vec<Cow<'_, str>> = Vec::new();
+        for row in self.rows.iter().filter(|row| !row.again.is_empty()) {
+            if !commands.contains(&row.again.as_str().into()) {
+                commands.push(row.again.as_str().into());
+            }
+        }
+        if commands.is_empty() {
+            commands.push(Again::default().scene(&self.name).into());
+        }
+        commands
+    }
+
     fn verdict(&self) -> Verdict {
         digest::verdict(&self.rows)
     }
@@ -140,7 +155,6 @@ impl ReportInput {
     pub fn from_rows(run: RunInfo, merged: &Merged) -> Self {
         let scene = |(name, rows): (&str, Vec<Row>)| SceneReport {
             name: name.to_owned(),
-            replay_command: digest::replay(name, ""),
             rows,
             ..SceneReport::default()
         };

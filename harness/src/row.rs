@@ -68,6 +68,10 @@ pub struct Row {
     pub ms_b: Option<f64>,
     /// One line for people: the first difference, the largest error, a remark.
     pub note: String,
+    /// The command that replays the scene as the run did; empty where that is not
+    /// known.
+    #[serde(default)]
+    pub again: String,
 }
 
 /// What a row amounts to.

@@ -17,6 +17,7 @@ use std::time::Duration;
 use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::again::Again;
 use crate::row::{Row, Summary};
 use crate::text::clean;
 use table::Table;
@@ -29,6 +30,8 @@ pub const PLAIN_WIDTH: usize = 120;
 pub struct SceneResult {
     /// `family/case`.
     pub name: String,
+    /// What selects it on the command line: its name, or its file outside the corpus.
+    pub argument: String,
     /// What the scene is for, from its file.
     pub purpose: String,
     /// Its rows.
@@ -80,11 +83,10 @@ impl Reporter {
         }
     }
 
-    /// Adds options of the run that change results, such as `--no-skip`, to the
-    /// commands that run a scene again.
+    /// What the commands that run a scene again repeat of this run.
     #[must_use]
-    pub fn with_options(mut self, options: impl Into<String>) -> Self {
-        self.table.options = options.into();
+    pub fn with_again(mut self, again: Again) -> Self {
+        self.table.again = again;
         self
     }
 

@@ -1,8 +1,9 @@
 //! Scenes outside the corpus: meshes and scene files of the user's own.
 
 use std::collections::BTreeSet;
+use std::process::Command;
 
-use super::{Place, SCENE};
+use super::{Place, Ran, SCENE};
 use crate::results::{count, json};
 
 /// A triangle, and one of half the height.
@@ -61,4 +62,51 @@ fn equal_stems_are_different_scenes() {
         std::fs::read(place.root.join("dump").join(name).join(array)).expect("it is there")
     };
     assert_ne!(dumped(names[0]), dumped(names[1]), "each has its own mesh");
+}
+
+/// The command that terminal, JSON lines and reports give runs the same scene, with
+/// the same options, and comes to the same.
+#[test]
+fn the_command_that_replays_a_scene_can_be_run() {
+    let place = Place::new("again");
+    let wrong = SCENE.replace("fragments = 32", "fragments = 33");
+    place.write("my scenes/odd/scene.toml", &wrong);
+    let options =
+        "--leg embree --adapter nonsuch --path compute --seed 7 --gpu-from sort --no-skip";
+    let mut arguments = vec!["replay", "--json", "out.json", "my scenes/odd"];
+    arguments.extend(options.split(' '));
+    let first = place.run(&arguments).expect(1);
+    let file = "'my scenes/odd/scene.toml'";
+    let command = format!("cargo triptych replay --exact --no-cache {options} {file}");
+    let hint = "cargo triptych replay --exact --seed 7 --gpu-from sort --no-skip";
+    let hint = format!("again: {hint} {file}\n");
+    assert!(
+        first.stdout.contains(&hint),
+        "{} lacks {hint}",
+        first.stdout
+    );
+    let lines = json(&place.root.join("out.json"));
+    assert_eq!(lines[0]["again"], command.as_str());
+    place
+        .run(&["report", "out.json", "--output", "merged.html"])
+        .expect(1);
+    for page in ["reports/out/index.html", "merged.html"] {
+        let text = std::fs::read_to_string(place.root.join(page)).expect("a report");
+        let shown = format!("<code>{command}</code>");
+        assert_eq!(text.matches(&shown).count(), 1, "{page} lacks {command}");
+    }
+    // Run as it stands, by a shell.
+    let line = command.replace("cargo triptych", "\"$TRIPTYCH\"");
+    let mut shell = Command::new("sh");
+    shell
+        .args(["-c", &line])
+        .current_dir(&place.root)
+        .env("TRIPTYCH", place.command(&[]).get_program())
+        .env("TRIPTYCH_CORPUS", place.root.join("corpus"));
+    let second = Ran::of(&mut shell).expect(1);
+    assert!(
+        second.stdout.contains(&hint),
+        "{} lacks {hint}",
+        second.stdout
+    );
 }

@@ -9,7 +9,7 @@ use triptych_harness::registry;
 use super::{Place, SCENE};
 
 /// The fields of a row and of the summary that are part of the interface.
-const ROW: [&str; 17] = [
+const ROW: [&str; 18] = [
     "scene",
     "family",
     "stage",
@@ -27,6 +27,7 @@ const ROW: [&str; 17] = [
     "unit",
     "admitted",
     "note",
+    "again",
 ];
 const SUMMARY: [&str; 5] = ["scenes", "compared", "unexplained", "skipped", "seconds"];
 

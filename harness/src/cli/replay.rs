@@ -9,6 +9,7 @@ use triptych_gpu::raster::Path;
 
 use super::Verdict;
 use super::run_info::{run_info, scene_report};
+use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
 use crate::error::InputError;
@@ -111,20 +112,26 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         Some(path) => Some(json::Writer::create(path).context("cannot write --json")?),
         None => None,
     };
-    let mut reporter = Reporter::new(selected.len()).with_options(args.again());
+    let again = args.again();
+    let mut reporter = Reporter::new(selected.len()).with_again(again.clone());
     for remark in options.cache.iter().flat_map(Cache::remarks) {
         reporter.remark(&remark)?;
     }
     let (mut rows, mut scenes, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
     for entry in &selected {
         reporter.scene_started(&entry.name);
-        let outcome = match replay(entry, &adapters, &options) {
+        let mut outcome = match replay(entry, &adapters, &options) {
             Ok(outcome) => outcome,
             Err(error) => {
                 unreadable.push(error);
                 continue;
             }
         };
+        let argument = entry.argument(&entries);
+        let command = again.scene(&argument);
+        for row in &mut outcome.rows {
+            row.again.clone_from(&command);
+        }
         if let Some(writer) = &mut writer {
             writer.rows(&outcome.rows)?;
         }
@@ -134,6 +141,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         rows.extend_from_slice(&outcome.rows);
         reporter.scene_done(&SceneResult {
             name: outcome.name.clone(),
+            argument,
             purpose: outcome.purpose.clone(),
             rows: outcome.rows.clone(),
         })?;
@@ -212,18 +220,18 @@ impl Args {
         Ok(adapters)
     }
 
-    /// The options that a command must repeat to see the same result.
-    fn again(&self) -> String {
-        let mut words = Vec::new();
-        if let Some(seed) = self.seed {
-            words.push(format!("--seed {seed}"));
+    /// What a command must repeat to see the same result.
+    fn again(&self) -> Again {
+        let mut legs: Vec<String> = self.leg.iter().map(|leg| chosen("--leg", *leg)).collect();
+        legs.extend(self.adapter.iter().map(|name| option("--adapter", name)));
+        legs.extend(self.path.map(|path| chosen("--path", path)));
+        let mut options = Vec::new();
+        options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
+        if !matches!(self.gpu_from, Stage::Cover) {
+            options.push(chosen("--gpu-from", self.gpu_from));
         }
-        if let Some(stage) = self.gpu_from.to_possible_value() {
-            let given = !matches!(self.gpu_from, Stage::Cover);
-            words.extend(given.then(|| format!("--gpu-from {}", stage.get_name())));
-        }
-        words.extend(self.no_skip.then(|| "--no-skip".to_owned()));
-        words.join(" ")
+        options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
+        Again { legs, options }
     }
 
     fn options(&self) -> Options {
@@ -250,4 +258,10 @@ impl Args {
             cache: None,
         }
     }
+}
+
+/// An option whose values are listed, ready for a shell.
+fn chosen(name: &str, value: impl ValueEnum) -> String {
+    let value = value.to_possible_value().expect("no value is hidden");
+    option(name, value.get_name())
 }

@@ -77,10 +77,6 @@ pub fn scene_report(outcome: Outcome) -> SceneReport {
         });
     }
     SceneReport {
-        replay_command: format!(
-            "cargo triptych replay --exact --no-cache {}",
-            shell_word(&outcome.name)
-        ),
         name: outcome.name,
         purpose: outcome.purpose,
         rows: outcome.rows,

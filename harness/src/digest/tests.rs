@@ -23,6 +23,7 @@ pub fn row(scene: &str, stage: &str, a: &str, b: &str) -> Row {
         ms_a: None,
         ms_b: None,
         note: String::new(),
+        again: String::new(),
     }
 }
 
@@ -160,29 +161,4 @@ fn skips_are_counted_by_reason() {
         skipped(row("t", "build", "spec", "gpu@x/compute"), "no adapter"),
     ];
     assert_eq!(skips(&rows), [("no adapter", 2), ("no Embree", 1)]);
-}
-
-#[test]
-fn the_command_names_each_leg_once_and_quotes() {
-    let gpu = row(
-        "abuffer/fan",
-        "build",
-        "spec",
-        "gpu@llvmpipe (LLVM 15)/compute",
-    );
-    let expected = "cargo triptych replay --exact --leg gpu \
-                    --adapter 'llvmpipe (LLVM 15)' --path compute --seed 7 abuffer/fan";
-    assert_eq!(rerun(&gpu, "--seed 7"), expected);
-    let paths = row("-x", "build", "gpu@x/compute", "gpu@x/fragment");
-    let expected = "cargo triptych replay --exact --leg gpu --adapter x -- -x";
-    assert_eq!(rerun(&paths, ""), expected, "both paths, hence neither");
-    let unskipped = row("a", "plan", "gpu@x/compute", "gpu@x/compute --no-skip");
-    let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute a";
-    assert_eq!(rerun(&unskipped, ""), expected);
-    let closed = row("a", "expect", "spec", "closed form");
-    assert_eq!(rerun(&closed, ""), "cargo triptych replay --exact a");
-    let vote = row("a", "cover", "gpu@x/compute", "embree");
-    let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute \
-                    --leg embree a";
-    assert_eq!(rerun(&vote, ""), expected);
 }

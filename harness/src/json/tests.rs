@@ -25,6 +25,7 @@ fn row(scene: &str, compared: u64, differ: u64) -> Row {
         cached: true,
         ms_a: Some(1.5),
         ms_b: None,
+        again: String::new(),
         note: "é \u{1f}".to_owned(),
     }
 }

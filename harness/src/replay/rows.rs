@@ -107,6 +107,7 @@ impl Rows {
             ms_a: None,
             ms_b: None,
             note: String::new(),
+            again: String::new(),
         }
     }
 }

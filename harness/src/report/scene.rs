@@ -20,7 +20,9 @@ pub fn section(i: usize, scene: &SceneReport) -> Markup {
             @if scene.rows.is_empty() {
                 p.diverge { "Nothing was compared, and no reason is known." }
             }
-            p.again { "Again: " code { (text(&scene.replay_command)) } }
+            @for command in scene.again() {
+                p.again { "Again: " code { (text(&command)) } }
+            }
             (differences(&scene.differences))
             (figures::grid(scene))
             (rows::table(scene))

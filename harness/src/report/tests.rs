@@ -25,6 +25,7 @@ fn input() -> ReportInput {
         unexplained: 1,
         causes: [(Cause::LostNode, 2)].into(),
         ms_a: Some(1.5),
+        again: "cargo triptych replay --exact --seed 7 abuffer/bad".to_owned(),
         ..row("abuffer/bad", "build", "spec", "gpu@x/compute")
     };
     let marks = [(0, Some(Cause::LostNode)), (1, None)];
@@ -50,7 +51,6 @@ fn input() -> ReportInput {
             words: "lost-node: pixel (0, 0)\nsecond line".to_owned(),
             sides: vec![("spec".to_owned(), vec!["key 7".to_owned()])],
         }],
-        replay_command: "cargo triptych replay --exact abuffer/bad".to_owned(),
     };
     let good = SceneReport {
         name: "abuffer/good".to_owned(),
@@ -80,7 +80,7 @@ fn everything_that_was_given_is_shown() {
         "1 min 1 s",
         "lost-node: pixel (0, 0)\nsecond line",
         "key 7",
-        "cargo triptych replay --exact abuffer/bad",
+        "cargo triptych replay --exact --seed 7 abuffer/bad",
         "no opaque triangles",
         "12.5 ms saved",
         "1 without a cause",
@@ -133,7 +133,6 @@ fn what_comes_from_outside_is_text() {
     let scene = &mut input.scenes[0];
     scene.name = hostile();
     scene.purpose = hostile();
-    scene.replay_command = hostile();
     scene.differences[0].words = hostile();
     scene.differences[0].sides = vec![(hostile(), vec![hostile()])];
     scene.plan[0].pass = hostile();
@@ -143,7 +142,7 @@ fn what_comes_from_outside_is_text() {
     let bad = &mut scene.rows[0];
     (bad.scene, bad.stage, bad.a) = (hostile(), hostile(), hostile());
     (bad.b, bad.unit, bad.note) = (hostile(), hostile(), hostile());
-    bad.skipped = Some(hostile());
+    (bad.skipped, bad.again) = (Some(hostile()), hostile());
     let page = page(&input).into_string();
     assert_eq!(count_of(&page, "<script"), 1, "ours");
     assert!(!page.contains("alert(1)</"), "a closing tag got through");
@@ -227,10 +226,15 @@ fn a_budget_is_shown_and_a_broken_one_stands_out() {
 
 #[test]
 fn a_report_of_rows_alone() {
+    let asked = |path: &str, mut row: Row| {
+        row.again = format!("cargo triptych replay --path {path} a.obj");
+        row
+    };
     let rows = vec![
-        row("abuffer/a", "build", "spec", "embree"),
+        asked("fragment", row("a", "build", "spec", "embree")),
         row("abuffer/b", "build", "spec", "embree"),
-        row("abuffer/a", "build", "spec", "gpu@x/compute"),
+        asked("compute", row("a", "build", "spec", "gpu@x/compute")),
+        asked("compute", row("a", "sort", "spec", "gpu@x/compute")),
     ];
     let summary = Summary::of(&rows, 7.0);
     let merged = Merged { rows, summary };
@@ -238,7 +242,13 @@ fn a_report_of_rows_alone() {
     assert_eq!(input.summary(), merged.summary);
     let page = page(&input).into_string();
     assert!(page.contains("2 scenes agree"), "headline");
-    assert!(page.contains("replay --exact abuffer/b"), "command");
+    for (command, times) in [
+        ("replay --exact --no-cache abuffer/b", 1),
+        ("replay --path fragment a.obj", 1),
+        ("replay --path compute a.obj", 1),
+    ] {
+        assert_eq!(count_of(&page, command), times, "{command}");
+    }
     assert_eq!(count_of(&page, "<figure"), 0);
 }
 

@@ -6,17 +6,18 @@ use console::Style;
 
 use super::SceneResult;
 use super::ink::Ink;
+use crate::again::Again;
 use crate::cause::Cause;
-use crate::digest::{self, Pair};
+use crate::digest::Pair;
 use crate::row::{Row, Verdict};
 use crate::text::{clean, count, plural, share};
 
 /// For each pair of legs the first stage that diverges: an error belongs to the
 /// first stage that has it, later ones inherit it and are only counted.
-pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], options: &str, ink: Ink) -> Vec<String> {
+pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], again: &Again, ink: Ink) -> Vec<String> {
     let mut lines = Vec::new();
     if pairs.is_empty() {
-        let command = digest::replay(&scene.name, options);
+        let command = again.scene(&scene.argument);
         lines.push("   nothing was compared, and no reason is known".to_owned());
         lines.push(ink.paint(&format!("     again: {}", clean(&command)), Style::dim));
     }
@@ -42,8 +43,8 @@ pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], options: &str, ink: Ink) -
             let later = later.join(", ");
             lines.push(format!("     later stages diverge too: {}", clean(&later)));
         }
-        let again = format!("     again: {}", digest::rerun(row, options));
-        lines.push(ink.paint(&clean(&again), Style::dim));
+        let command = format!("     again: {}", again.row(row, &scene.argument));
+        lines.push(ink.paint(&clean(&command), Style::dim));
     }
     lines
 }

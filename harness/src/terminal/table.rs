@@ -7,6 +7,7 @@ use super::explain;
 use super::ink::Ink;
 use super::layout::{Layout, MARK, cut, pad, right};
 use super::totals::Totals;
+use crate::again::Again;
 use crate::digest::{self, Pair, Times, column_order};
 use crate::row::{Row, Summary, Verdict};
 use crate::text::{clean, compact, count, plural, share, time};
@@ -20,8 +21,8 @@ pub struct Table {
     /// Reasons for skipping, by the number that stands for them.
     reasons: Vec<String>,
     totals: Totals,
-    /// Options of the run for the commands that run a scene again.
-    pub options: String,
+    /// The run, for the commands that run a scene again.
+    pub again: Again,
 }
 
 impl Table {
@@ -33,7 +34,7 @@ impl Table {
             pairs: Vec::new(),
             reasons: Vec::new(),
             totals: Totals::default(),
-            options: String::new(),
+            again: Again::default(),
         }
     }
 
@@ -57,7 +58,7 @@ impl Table {
             let line = format!("{}[{}] {}", " ".repeat(MARK), i + 1, clean(reason));
             lines.push(self.ink.paint(&line, Style::dim));
         }
-        lines.extend(explain::scene(scene, &pairs, &self.options, self.ink));
+        lines.extend(explain::scene(scene, &pairs, &self.again, self.ink));
         lines
     }
 

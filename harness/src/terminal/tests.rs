@@ -20,7 +20,10 @@ impl Write for Page {
 fn printed(width: usize, colour: bool, scenes: &[SceneResult]) -> String {
     let page = Page::default();
     let reporter = Reporter::to(Box::new(page.clone()), width, colour);
-    let mut reporter = reporter.with_options("--no-skip");
+    let mut reporter = reporter.with_again(Again {
+        legs: Vec::new(),
+        options: vec!["--no-skip".to_owned()],
+    });
     for scene in scenes {
         reporter.scene_started(&scene.name);
         reporter.scene_done(scene).expect("printed");
@@ -36,6 +39,7 @@ fn printed(width: usize, colour: bool, scenes: &[SceneResult]) -> String {
 fn scene(name: &str, rows: Vec<Row>) -> SceneResult {
     SceneResult {
         name: name.to_owned(),
+        argument: name.to_owned(),
         purpose: "shows \x1b[2J something".to_owned(),
         rows,
     }
