@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use triptych_harness::registry;
 
-use super::{Place, SCENE};
+use super::{Place, SCENE, repository};
 
 /// The fields of a row and of the summary that are part of the interface.
 const ROW: [&str; 18] = [
@@ -161,6 +161,23 @@ fn cached_results_say_so() {
             "{cached}: {lines:?}"
         );
     }
+}
+
+/// A report is there to be shared: it says which Embree, and not where it lies.
+#[test]
+fn the_report_tells_no_place_of_this_machine() {
+    let place = Place::new("places");
+    place.write("corpus/raster/quads/scene.toml", SCENE);
+    place.run(&["replay", "--leg", "embree"]).expect(0);
+    let page = place.root.join("reports/out/index.html");
+    let page = fs::read_to_string(page).expect("a report");
+    assert!(page.contains("(libembree4"), "the library's file");
+    let native = repository().join(".native");
+    for folder in [native.as_path(), &place.root, Path::new("/usr/lib")] {
+        let folder = folder.display().to_string();
+        assert!(!page.contains(&folder), "{folder} is in the report");
+    }
+    assert!(!page.contains("/libembree4"), "a folder of Embree's");
 }
 
 /// Shape and bytes of a NumPy array.

@@ -16,7 +16,7 @@ pub fn run_info(adapters: &[Adapter], embree: Option<&Library>, seconds: f64) ->
         .map(|w| shell_word(&w).into())
         .collect();
     let mut versions = vec![("triptych".to_owned(), env!("CARGO_PKG_VERSION").to_owned())];
-    versions.extend(embree.map(|library| ("embree".to_owned(), library.to_string())));
+    versions.extend(embree.map(|library| ("embree".to_owned(), library.named().to_string())));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     RunInfo {
         command: format!("cargo triptych {}", words.join(" ")),

@@ -28,6 +28,17 @@ impl fmt::Display for Library {
     }
 }
 
+impl Library {
+    /// Version and file without its folder, for what is shared with others.
+    pub fn named(&self) -> Self {
+        let file = self.path.as_ref().and_then(|path| path.file_name());
+        Self {
+            version: self.version,
+            path: file.map(PathBuf::from),
+        }
+    }
+}
+
 /// Asks the loaded library for its version.
 ///
 /// # Errors
