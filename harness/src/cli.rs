@@ -12,6 +12,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::output::complain;
+
 /// What a command came to.
 pub enum Verdict {
     /// Everything that was compared agrees.
@@ -64,19 +66,10 @@ pub fn main() -> ExitCode {
     match result {
         Ok(Verdict::Agree) => ExitCode::SUCCESS,
         Ok(Verdict::Diverge) => ExitCode::from(1),
-        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             // One line: the user's mistake needs no backtrace.
-            eprintln!("triptych: {error:#}");
+            complain(format_args!("{error:#}"));
             ExitCode::from(2)
         }
     }
-}
-
-/// Somebody piped us into `head`; that is no failure.
-fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    let io = error
-        .chain()
-        .find_map(|e| e.downcast_ref::<std::io::Error>());
-    io.is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
 }

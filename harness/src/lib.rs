@@ -17,6 +17,7 @@ pub mod json;
 pub mod mesh;
 pub mod native;
 pub mod observe;
+pub mod output;
 pub mod picture;
 pub mod plan;
 pub mod registry;

@@ -18,6 +18,7 @@ use console::Term;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::again::Again;
+use crate::output;
 use crate::row::{Row, Summary};
 use crate::text::clean;
 use table::Table;
@@ -66,7 +67,7 @@ impl Reporter {
         bar.set_style(style(colour));
         bar.enable_steady_tick(Duration::from_millis(200));
         Self {
-            out: Box::new(io::stdout()),
+            out: Box::new(output::stdout()),
             table: Table::new(width, colour),
             bar,
             running: Vec::new(),
@@ -100,7 +101,7 @@ impl Reporter {
     ///
     /// # Errors
     ///
-    /// If the output is closed.
+    /// If the output cannot be written; like all others here.
     pub fn scene_done(&mut self, scene: &SceneResult) -> io::Result<()> {
         let name = clean(&scene.name);
         self.running.retain(|running| *running != name);
@@ -114,7 +115,7 @@ impl Reporter {
     ///
     /// # Errors
     ///
-    /// If the output is closed.
+    /// As [`Self::scene_done`].
     pub fn remark(&mut self, text: &str) -> io::Result<()> {
         self.print(&[clean(text).into_owned()])
     }
@@ -123,7 +124,7 @@ impl Reporter {
     ///
     /// # Errors
     ///
-    /// If the output is closed.
+    /// As [`Self::scene_done`].
     pub fn finish(&mut self, summary: &Summary, report: Option<&Path>) -> io::Result<()> {
         self.bar.finish_and_clear();
         let mut lines = self.table.totals(summary);

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::Verdict;
 use crate::calibrate::Grid;
 use crate::replay::gpu::Adapter;
-use crate::{corpus, embree};
+use crate::{corpus, embree, output};
 
 /// What the project found out about drivers the hard way.
 const KNOWN: [(&str, &str); 3] = [
@@ -24,7 +24,7 @@ const KNOWN: [(&str, &str); 3] = [
 ];
 
 pub fn run() -> anyhow::Result<Verdict> {
-    let mut out = std::io::stdout().lock();
+    let mut out = output::stdout();
     let mut well = adapters(&mut out)?;
     well &= embree(&mut out)?;
     well &= meshes(&mut out)?;

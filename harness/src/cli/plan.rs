@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use super::Verdict;
-use crate::corpus;
 use crate::plan::Plan;
 use crate::scene::load_entry;
+use crate::{corpus, output};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -19,7 +19,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let entries = corpus::list(&corpus::root())?;
-    let mut out = std::io::stdout().lock();
+    let mut out = output::stdout();
     for entry in corpus::select(&entries, &args.scenes, args.exact)? {
         let loaded = load_entry(&entry, None)?;
         let triangles = loaded.scene.triangles.len();

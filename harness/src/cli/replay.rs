@@ -13,6 +13,7 @@ use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
 use crate::error::InputError;
+use crate::output::complain;
 use crate::replay::gpu::{Adapter, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
@@ -24,7 +25,9 @@ use crate::{corpus, embree, json};
 #[command(after_help = "Examples:\n  \
     triptych replay raster/ abuffer/quads\n  \
     triptych replay --adapter llvmpipe --path compute --json out.json\n  \
-    triptych replay my.obj --dump dump --no-cache")]
+    triptych replay my.obj --dump dump --no-cache\n\n\
+    A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
+    JSON lines and exit code are those of the whole run.")]
 pub struct Args {
     /// Parts of scene names, scene files, or meshes; the whole corpus without one
     #[arg(value_name = "PATTERN")]
@@ -173,7 +176,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
 fn could_not_run(mut errors: Vec<InputError>) -> anyhow::Result<Verdict> {
     let last = errors.pop().context("no error")?;
     for error in errors {
-        eprintln!("triptych: {error}");
+        complain(error);
     }
     Err(last.into())
 }

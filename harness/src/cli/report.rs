@@ -1,5 +1,6 @@
 //! `triptych report`.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use anyhow::Context;
@@ -7,7 +8,7 @@ use anyhow::Context;
 use super::Verdict;
 use super::run_info::run_info;
 use crate::report::{self, ReportInput};
-use crate::{corpus, json};
+use crate::{corpus, json, output};
 
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  triptych report shard1.json shard2.json --output report.html")]
@@ -31,7 +32,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let run = run_info(&[], None, merged.summary.seconds);
     report::write(&page, &ReportInput::from_rows(run, &merged))
         .with_context(|| format!("cannot write {}", page.display()))?;
-    println!("Report: {}", page.display());
+    writeln!(output::stdout(), "Report: {}", page.display())?;
     Ok(if merged.summary.diverging == 0 {
         Verdict::Agree
     } else {
