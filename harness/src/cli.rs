@@ -6,6 +6,7 @@ mod list;
 mod plan;
 mod replay;
 mod report;
+mod results;
 mod run_info;
 
 use std::process::ExitCode;

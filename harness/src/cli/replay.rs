@@ -8,7 +8,8 @@ use clap::ValueEnum;
 use triptych_gpu::raster::Path;
 
 use super::Verdict;
-use super::run_info::{run_info, scene_report};
+use super::results::Results;
+use super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
@@ -18,8 +19,7 @@ use crate::replay::gpu::{Adapter, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
 use crate::row::Summary;
-use crate::terminal::{Reporter, SceneResult};
-use crate::{corpus, embree, json};
+use crate::{corpus, embree};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -111,53 +111,28 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     if !args.no_cache && options.dump.is_none() {
         options.cache = Some(Cache::open(&out.join("cache")).context("cannot open the cache")?);
     }
-    let mut writer = match &args.json {
-        Some(path) => Some(json::Writer::create(path).context("cannot write --json")?),
-        None => None,
-    };
-    let again = args.again();
-    let mut reporter = Reporter::new(selected.len()).with_again(again.clone());
+    let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
     for remark in options.cache.iter().flat_map(Cache::remarks) {
-        reporter.remark(&remark)?;
+        results.reporter.remark(&remark)?;
     }
-    let (mut rows, mut scenes, mut unreadable) = (Vec::new(), Vec::new(), Vec::new());
+    let mut unreadable = Vec::new();
     for entry in &selected {
-        reporter.scene_started(&entry.name);
-        let mut outcome = match replay(entry, &adapters, &options) {
-            Ok(outcome) => outcome,
-            Err(error) => {
-                unreadable.push(error);
-                continue;
-            }
-        };
-        let argument = entry.argument(&entries);
-        let command = again.scene(&argument);
-        for row in &mut outcome.rows {
-            row.again.clone_from(&command);
+        results.reporter.scene_started(&entry.name);
+        match replay(entry, &adapters, &options) {
+            Ok(outcome) => results.add(entry.argument(&entries), outcome)?,
+            Err(error) => unreadable.push(error),
         }
-        if let Some(writer) = &mut writer {
-            writer.rows(&outcome.rows)?;
-        }
-        for remark in &outcome.remarks {
-            reporter.remark(remark)?;
-        }
-        rows.extend_from_slice(&outcome.rows);
-        reporter.scene_done(&SceneResult {
-            name: outcome.name.clone(),
-            argument,
-            purpose: outcome.purpose.clone(),
-            rows: outcome.rows.clone(),
-        })?;
-        scenes.push(scene_report(outcome));
     }
-    if let ([], Some(_)) = (scenes.as_slice(), unreadable.first()) {
-        drop(reporter);
+    if results.scenes.is_empty() && !unreadable.is_empty() {
+        drop(results);
         return could_not_run(unreadable);
     }
-    let summary = Summary::of(&rows, start.elapsed().as_secs_f64());
-    if let Some(writer) = writer {
-        writer.finish(summary.seconds)?;
-    }
+    let summary = results.summary(start.elapsed().as_secs_f64())?;
+    let Results {
+        mut reporter,
+        scenes,
+        ..
+    } = results;
     let run = run_info(&adapters, library.as_ref(), summary.seconds);
     let page = out.join("index.html");
     report::write(&page, &ReportInput { run, scenes })
