@@ -2,7 +2,8 @@
 //! spec found is what its snapshot says.
 //!
 //! A scene without its mesh is ignored, and says so; asked for all the same
-//! (`--include-ignored`), it fails. Snapshots: `cargo insta review`.
+//! (`--include-ignored`), it fails. A snapshot that differs or is missing is left pending
+//! for `cargo insta review`.
 
 mod devices;
 
@@ -173,7 +174,14 @@ fn dangling(folder: &Path, entries: &[Entry]) -> Result<(), Failed> {
             let path = file?.path();
             if path.is_dir() {
                 folders.push(path);
-            } else if !scenes.contains(&path.with_extension("snap")) {
+                continue;
+            }
+            // A pending one is its scene's, and for review.
+            let snapshot = match path.extension() {
+                Some(extension) if extension == "new" => path.with_extension(""),
+                _ => path.clone(),
+            };
+            if !scenes.contains(&snapshot) {
                 left.push(path.display().to_string());
             }
         }

@@ -16,24 +16,52 @@ fn manifest(folder: &str) -> Table {
 
 /// The crates' roots from the repository's, with `/`.
 pub fn targets() -> Vec<String> {
+    MEMBERS
+        .iter()
+        .flat_map(|member| targets_of(member))
+        .collect()
+}
+
+fn targets_of(member: &str) -> Vec<String> {
+    let manifest = manifest(member);
     let mut targets = Vec::new();
-    for member in MEMBERS {
-        let manifest = manifest(member);
-        for kind in ["bin", "test", "bench", "example"] {
-            let all = manifest.get(kind).and_then(Value::as_array);
-            for target in all.into_iter().flatten() {
-                let path = target.get("path").and_then(Value::as_str);
-                let path = path.unwrap_or_else(|| panic!("{member}: a {kind} without path"));
-                targets.push(match path.strip_prefix("../") {
-                    Some(path) => path.to_owned(),
-                    None => format!("{member}/{path}"),
-                });
-            }
+    for kind in ["bin", "test", "bench", "example"] {
+        let all = manifest.get(kind).and_then(Value::as_array);
+        for target in all.into_iter().flatten() {
+            let path = target.get("path").and_then(Value::as_str);
+            let path = path.unwrap_or_else(|| panic!("{member}: a {kind} without path"));
+            targets.push(match path.strip_prefix("../") {
+                Some(path) => path.to_owned(),
+                None => format!("{member}/{path}"),
+            });
         }
-        let library = format!("{member}/src/lib.rs");
-        targets.extend(root().join(&library).is_file().then_some(library));
     }
+    let library = format!("{member}/src/lib.rs");
+    targets.extend(root().join(&library).is_file().then_some(library));
     targets
+}
+
+/// The tool that reviews snapshots is of the version that writes them.
+#[test]
+fn the_reviewing_tool_fits() {
+    let pinned = &manifest("")["workspace"]["dependencies"]["insta"]["version"];
+    let version = pinned.as_str().expect("a version").trim_start_matches('=');
+    let command = format!("cargo install cargo-insta --version {version} --locked");
+    let page = std::fs::read_to_string(root().join("CONTRIBUTING.md")).expect("there is one");
+    assert!(page.contains(&command), "CONTRIBUTING.md lacks {command}");
+}
+
+/// `cargo insta` looks for pending snapshots below the folder of every target. Below
+/// two packages' it would ask about each snapshot twice.
+#[test]
+fn snapshots_are_below_one_package() {
+    let below = |target: &String| {
+        let folder = target.rsplit_once('/').map_or("", |(folder, _)| folder);
+        "tests/snapshots".starts_with(&format!("{folder}/"))
+    };
+    let mut packages = MEMBERS.to_vec();
+    packages.retain(|member| targets_of(member).iter().any(below));
+    assert_eq!(packages, ["tests"], "packages with a target above");
 }
 
 #[test]

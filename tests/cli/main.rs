@@ -4,15 +4,10 @@
 //! A target of the harness, whose binary it runs; each test works in a folder of its
 //! own, with a corpus of its own, so that no report of the user's is touched.
 
-#[path = "cli/corpus.rs"]
 mod corpus;
-#[path = "cli/mistakes.rs"]
 mod mistakes;
-#[path = "cli/output.rs"]
 mod output;
-#[path = "cli/outside.rs"]
 mod outside;
-#[path = "cli/results.rs"]
 mod results;
 
 use std::fs;
