@@ -10,6 +10,10 @@ use triptych_harness::scene::{Loaded, load};
 
 #[path = "hostile/files.rs"]
 mod files;
+#[path = "hostile/limits.rs"]
+mod limits;
+#[path = "hostile/memory.rs"]
+mod memory;
 #[path = "hostile/mutate.rs"]
 mod mutate;
 #[path = "hostile/obj.rs"]

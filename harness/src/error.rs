@@ -3,6 +3,14 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::text;
+
+/// Characters of a path that an error shows; no system has longer ones.
+const FILE_SHOWN: usize = 4096;
+
+/// Characters of a message that an error shows.
+const MESSAGE_SHOWN: usize = 1000;
+
 /// Bad input: where it is, and what would be right.
 ///
 /// Displays as `file:line: message` (or less, where there is less to say).
@@ -37,11 +45,14 @@ impl InputError {
 
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // One line, whatever the file held.
+        // One line that a terminal can show, whatever the file held.
+        let file = self.file.to_string_lossy();
+        let file = text::cut(&file, FILE_SHOWN);
         let message = self.message.replace(['\n', '\r'], " ");
+        let message = text::cut(&message, MESSAGE_SHOWN);
         match self.line {
-            Some(line) => write!(f, "{}:{line}: {message}", self.file.display()),
-            None => write!(f, "{}: {message}", self.file.display()),
+            Some(line) => write!(f, "{file}:{line}: {message}"),
+            None => write!(f, "{file}: {message}"),
         }
     }
 }

@@ -17,8 +17,8 @@ use std::path::Path;
 
 use crate::error::InputError;
 
-pub use hair::{layout_of, load as load_hair};
-pub use read::{BYTES_MAX, read};
+pub use hair::{LAYOUT_MAX, layout_of, load as load_hair};
+pub use read::{BYTES_MAX, Intake};
 
 /// Most triangles of a mesh and of a scene. A triangle costs a leg up to about
 /// 500 bytes at once (three vertices, clipped corners in `f64`, rows), so this
@@ -27,6 +27,9 @@ pub const TRIANGLES_MAX: u64 = 1 << 22;
 
 /// Most vertices of a mesh and of a scene: three for each triangle.
 pub const VERTICES_MAX: u64 = 3 * TRIANGLES_MAX;
+
+/// Most materials of a mesh and of its libraries.
+pub const MATERIALS_MAX: u64 = 1 << 16;
 
 /// Triangles as loaded, in object space.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -86,22 +89,23 @@ impl Mesh {
     }
 }
 
-/// Loads an `.obj` or `.ply`, with or without `.gz`.
+/// Loads an `.obj` or `.ply`, with or without `.gz`, whose bytes `intake` has read. It
+/// reads material libraries too.
 ///
 /// # Errors
 /// Whatever is wrong with the file, with its line and value.
-pub fn load(path: &Path, bytes: &[u8]) -> Result<Mesh, InputError> {
+pub fn load(intake: &mut Intake, path: &Path, bytes: Vec<u8>) -> Result<Mesh, InputError> {
     let name = path.to_string_lossy().to_lowercase();
     let name = name.strip_suffix(".gz").unwrap_or(&name);
-    let mesh = if name.ends_with(".obj") {
-        obj::load(path, bytes)?
+    if name.ends_with(".obj") {
+        let text = intake.unpack(path, bytes)?;
+        obj::load(intake, path, &text)
     } else if name.ends_with(".ply") {
-        ply::load(path, bytes)?
+        ply::load(path, &intake.unpack(path, bytes)?)
     } else {
         let message = "is no mesh by its name: .obj and .ply are read, and .gz of either";
-        return Err(InputError::new(path, message));
-    };
-    Ok(mesh)
+        Err(InputError::new(path, message))
+    }
 }
 
 /// Why a mesh of so many triangles and vertices is refused, if it is.

@@ -17,10 +17,11 @@ use triptych_spec::scene::Scene;
 
 use crate::corpus::{self, Entry};
 use crate::error::InputError;
+use crate::mesh::Intake;
 use file::SceneFile;
 
-/// Largest scene.toml in bytes.
-pub const FILE_MAX: u64 = 1 << 22;
+/// Largest scene.toml in bytes. Parsing takes up to a hundred times as much memory.
+pub const FILE_MAX: u64 = 1 << 20;
 
 /// What a bare mesh is shown as.
 const BARE: &str = r#"
@@ -106,6 +107,18 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
 /// # Errors
 /// See [`LoadError`].
 pub fn load_entry(entry: &Entry, seed: Option<u64>) -> Result<Loaded, LoadError> {
+    load_from(&mut Intake::from_disk(), entry, seed)
+}
+
+/// Loads a scene from wherever its files lie.
+///
+/// # Errors
+/// See [`LoadError`].
+pub fn load_from(
+    intake: &mut Intake,
+    entry: &Entry,
+    seed: Option<u64>,
+) -> Result<Loaded, LoadError> {
     let path = &entry.path;
     let mut digest = Sha256::new();
     let mut parsed = if corpus::is_mesh(path) {
@@ -113,7 +126,7 @@ pub fn load_entry(entry: &Entry, seed: Option<u64>) -> Result<Loaded, LoadError>
         parsed.file.mesh = vec![source::bare(path)];
         parsed
     } else {
-        let bytes = crate::mesh::read(path, FILE_MAX)?;
+        let bytes = intake.read(path, FILE_MAX)?;
         digest.update(&bytes);
         parse(path, utf8(path, &bytes)?)?
     };
@@ -121,7 +134,7 @@ pub fn load_entry(entry: &Entry, seed: Option<u64>) -> Result<Loaded, LoadError>
         parsed.file.seed = seed;
     }
     digest.update(parsed.file.seed.to_le_bytes());
-    let meshes = source::load_all(&parsed, &mut digest)?;
+    let meshes = source::load_all(intake, &parsed, &mut digest)?;
     let scene = flatten::flatten(&parsed, &meshes)?;
     let mut stats = source::stats(&meshes);
     stats.sha256 = source::hex(&digest.finalize());
@@ -161,7 +174,7 @@ pub fn purpose(path: &Path) -> Result<String, InputError> {
     if corpus::is_mesh(path) {
         return Ok(parse(path, BARE)?.file.purpose.0);
     }
-    let bytes = crate::mesh::read(path, FILE_MAX)?;
+    let bytes = Intake::from_disk().read(path, FILE_MAX)?;
     Ok(parse(path, utf8(path, &bytes)?)?.file.purpose.0)
 }
 

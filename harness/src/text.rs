@@ -97,6 +97,14 @@ pub fn clean(text: &str) -> Cow<'_, str> {
     }
 }
 
+/// Untrusted text on one line, as [`clean`], cut off after so many characters.
+pub fn cut(text: &str, characters: usize) -> Cow<'_, str> {
+    match text.char_indices().nth(characters) {
+        None => clean(text),
+        Some((end, _)) => Cow::Owned(clean(&text[..end]).into_owned() + "…"),
+    }
+}
+
 /// A word of a POSIX shell's command line.
 pub fn shell_word(word: &str) -> Cow<'_, str> {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_./@%+=:,-".contains(c);

@@ -38,6 +38,35 @@ fn missing_files_folders_and_pipes_are_named() {
     assert!(message.contains("cannot be read"), "{message}");
 }
 
+/// Reading one of the kernel's may wait for an event; they have no length.
+#[test]
+fn files_without_length_are_not_read() {
+    let folder = Folder::new("kernel");
+    let link = folder.0.join("status.obj");
+    std::os::unix::fs::symlink("/proc/self/status", link).expect("a new link");
+    let nothing = "no triangles, only 0 lines and 0 points";
+    fails(&folder, "status.obj", nothing);
+}
+
+#[test]
+fn errors_are_one_short_line() {
+    let folder = Folder::new("line");
+    let start = "purpose = 'x'\nsize = [4, 4]\n";
+    let long = "k".repeat(1 << 19);
+    let texts = [
+        format!("{start}[[mesh]]\nfile = \"a\\n\\u001b[31mb.obj\"\n"),
+        format!("{start}[[mesh]]\nfile = '{long}.obj'\n"),
+        format!("{start}{long} = 1\n"),
+        format!("{start}\"\\u001b[31m\" = 1\n"),
+    ];
+    for text in texts {
+        let path = folder.write("scene.toml", text.as_bytes());
+        let message = attempt(&path).map(|_| ()).expect_err("a bad scene");
+        let plain = !message.contains(char::is_control);
+        assert!(plain && message.len() < 6000, "{message:?}");
+    }
+}
+
 #[test]
 fn a_mesh_that_a_scene_names_is_found_beside_it() {
     let folder = Folder::new("beside");

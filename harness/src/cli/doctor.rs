@@ -5,7 +5,7 @@ use std::io::Write;
 use super::Verdict;
 use crate::calibrate::Grid;
 use crate::replay::gpu::Adapter;
-use crate::{corpus, embree, output};
+use crate::{corpus, embree, mesh, output};
 
 /// What the project found out about drivers the hard way.
 const KNOWN: [(&str, &str); 3] = [
@@ -88,14 +88,14 @@ fn meshes(out: &mut impl Write) -> anyhow::Result<bool> {
     let folder = corpus::meshes();
     writeln!(out, "Meshes in {}", folder.display())?;
     let mut all = true;
-    for mesh in crate::mesh::lock::read()? {
-        let state = if folder.join(&mesh.name).is_file() {
+    for row in mesh::lock::read(&mut mesh::Intake::from_disk())? {
+        let state = if folder.join(&row.name).is_file() {
             "present"
         } else {
             "missing"
         };
         all &= state == "present";
-        writeln!(out, "  {state}  {} ({})", mesh.name, mesh.origin)?;
+        writeln!(out, "  {state}  {} ({})", row.name, row.origin)?;
     }
     Ok(all)
 }

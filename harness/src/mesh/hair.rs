@@ -4,12 +4,12 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
-use super::{Mesh, read, too_large};
+use super::{Intake, Mesh, too_large};
 use crate::error::InputError;
 use crate::vector::{add, cross, normalize, scale, sub};
 
-/// Largest .xml in bytes.
-const XML_MAX: u64 = 1 << 16;
+/// Largest layout in bytes.
+pub const LAYOUT_MAX: u64 = 1 << 16;
 
 /// An array in the .bin: byte offset and number of items.
 #[derive(Clone, Copy)]
@@ -31,37 +31,50 @@ pub fn layout_of(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// A layout that does not fit the data, or data out of range.
-pub fn load(path: &Path, bytes: &[u8], stride: NonZeroU32) -> Result<Mesh, InputError> {
-    let bytes = read::unpacked(path, bytes)?;
-    let (indices, positions) = layout(&layout_of(path))?;
+pub fn load(
+    intake: &mut Intake,
+    path: &Path,
+    bytes: Vec<u8>,
+    stride: NonZeroU32,
+) -> Result<Mesh, InputError> {
+    let bytes = intake.unpack(path, bytes)?;
+    let (indices, positions) = layout(intake, &layout_of(path))?;
     let error = |message: String| InputError::new(path, message);
     let indices = array::<4>(&bytes, indices).map_err(error)?;
-    let indices: Vec<u32> = indices.iter().map(|b| u32::from_le_bytes(*b)).collect();
     let positions = array::<16>(&bytes, positions).map_err(error)?;
-    let points: Vec<[f32; 4]> = positions.iter().map(point).collect();
-    if let Some(bad) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        let message = format!("point {bad} is not finite: {:?}", points[bad]);
+    if let Some(bad) = positions
+        .iter()
+        .position(|p| !point(p).iter().all(|x| x.is_finite()))
+    {
+        let message = format!("point {bad} is not finite: {:?}", point(&positions[bad]));
         return Err(error(message));
     }
     // A segment has two points.
-    let last = points.len().saturating_sub(1);
-    if let Some(bad) = indices.iter().position(|i| *i as usize >= last) {
-        let (index, count) = (indices[bad], points.len());
+    let last = positions.len().saturating_sub(1);
+    let first = |b: &[u8; 4]| u32::from_le_bytes(*b);
+    if let Some(bad) = indices.iter().position(|b| first(b) as usize >= last) {
+        let (index, count) = (first(&indices[bad]), positions.len());
         let message = format!("segment {bad} starts at point {index} of {count}");
         return Err(error(message));
     }
-    let kept: Vec<&[u32]> = indices
-        .chunk_by(|a, b| a.checked_add(1) == Some(*b))
-        .step_by(stride.get() as usize)
-        .collect();
-    let segments: u64 = kept.iter().map(|s| s.len() as u64).sum();
-    if let Some(message) = too_large(6 * segments, 3 * (segments + kept.len() as u64)) {
+    let strands = || {
+        let strands = indices.chunk_by(|a, b| first(a).checked_add(1) == Some(first(b)));
+        strands.step_by(stride.get() as usize)
+    };
+    let (strand_count, segments) = strands().fold((0, 0), |(strands, segments), strand| {
+        (strands + 1, segments + strand.len() as u64)
+    });
+    if let Some(message) = too_large(6 * segments, 3 * (segments + strand_count)) {
         return Err(error(message));
     }
     let mut mesh = Mesh::of_triangles(Vec::new(), Vec::new());
-    for strand in kept {
-        let first = strand[0] as usize;
-        prism(&mut mesh, &points[first..=first + strand.len()]);
+    for strand in strands() {
+        let start = first(&strand[0]) as usize;
+        let points: Vec<[f32; 4]> = positions[start..=start + strand.len()]
+            .iter()
+            .map(point)
+            .collect();
+        prism(&mut mesh, &points);
     }
     mesh.material = vec![0; mesh.triangles.len()];
     if mesh.triangles.is_empty() {
@@ -153,8 +166,8 @@ fn array<const N: usize>(bytes: &[u8], extent: Extent) -> Result<&[[u8; N]], Str
 
 /// Where `<indices ofs="" size=""/>` and `<positions ofs="" size=""/>` say the
 /// data are.
-fn layout(path: &Path) -> Result<(Extent, Extent), InputError> {
-    let bytes = read(path, XML_MAX)?;
+fn layout(intake: &mut Intake, path: &Path) -> Result<(Extent, Extent), InputError> {
+    let bytes = intake.read(path, LAYOUT_MAX)?;
     let text = String::from_utf8_lossy(&bytes);
     let extent = |tag: &str| {
         let start = text.find(&format!("<{tag} "))?;

@@ -1,5 +1,6 @@
 //! The table of packaged meshes, `corpus/meshes.lock`.
 
+use super::Intake;
 use crate::corpus;
 use crate::error::InputError;
 
@@ -21,9 +22,9 @@ pub struct Locked {
 ///
 /// # Errors
 /// A table that cannot be read, or a row without its seven columns.
-pub fn read() -> Result<Vec<Locked>, InputError> {
+pub fn read(intake: &mut Intake) -> Result<Vec<Locked>, InputError> {
     let path = corpus::root().join("meshes.lock");
-    let bytes = super::read(&path, BYTES_MAX)?;
+    let bytes = intake.read(&path, BYTES_MAX)?;
     let text = String::from_utf8_lossy(&bytes);
     let rows = (1..)
         .zip(text.lines())

@@ -1,16 +1,19 @@
 //! MTL material libraries through tobj: `Kd`, `d` and `Tr`; nothing else matters
 //! here, and what other statements say is not looked at.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 
-use super::read::read;
-use super::text::{number, quote, rest, statements, words};
+use super::text::{name, number, quote, statements, words};
+use super::{Intake, MATERIALS_MAX};
 use crate::error::InputError;
 
 /// Largest library in bytes.
 const LIBRARY_MAX: u64 = 1 << 24;
+
+/// Most libraries of a mesh.
+const LIBRARIES_MAX: usize = 64;
 
 /// Reflectance where a library leaves it out.
 const REFLECTANCE: f64 = 0.8;
@@ -20,6 +23,10 @@ const REFLECTANCE: f64 = 0.8;
 #[derive(Default)]
 pub(super) struct Library {
     defined: BTreeMap<String, ([f64; 3], f64)>,
+    /// Statements so far: some exporters name their library before every object.
+    statements: BTreeSet<String>,
+    /// Libraries so far.
+    count: usize,
 }
 
 impl Library {
@@ -28,22 +35,31 @@ impl Library {
         self.defined.get(name).copied()
     }
 
-    /// Reads what an `mtllib` statement names. A library that is missing, or not
-    /// in or below the mesh's folder, is a warning.
+    /// Reads what an `mtllib` statement names, on a line of a mesh. A library that is
+    /// missing, or not in or below the mesh's folder, is a warning.
     pub(super) fn add(
         &mut self,
-        mesh: &Path,
+        intake: &mut Intake,
+        (mesh, line): (&Path, usize),
         names: &str,
         warnings: &mut Vec<String>,
     ) -> Result<(), InputError> {
+        if !self.statements.insert(names.to_owned()) {
+            return Ok(());
+        }
         let folder = mesh.parent().unwrap_or(Path::new(""));
         // One name with blanks, or several names.
-        let whole = local(names).filter(|path| folder.join(path).exists());
+        let whole = local(names).filter(|path| intake.has(&folder.join(path)));
         let paths: Vec<(&str, Option<PathBuf>)> = match whole {
             Some(path) => vec![(names, Some(path))],
             None => names.split_whitespace().map(|n| (n, local(n))).collect(),
         };
         for (name, path) in paths {
+            self.count += 1;
+            if self.count > LIBRARIES_MAX {
+                let message = format!("more than {LIBRARIES_MAX} material libraries, the limit");
+                return Err(InputError::at(mesh, line, message));
+            }
             let shown = quote(name.as_bytes());
             let Some(path) = path.map(|p| folder.join(p)) else {
                 warnings.push(format!(
@@ -51,17 +67,24 @@ impl Library {
                 ));
                 continue;
             };
-            if !path.exists() {
+            if !intake.has(&path) {
                 warnings.push(format!("material library {shown} is not there"));
                 continue;
             }
-            let bytes = read(&path, LIBRARY_MAX)?;
+            let bytes = intake.read(&path, LIBRARY_MAX)?;
             for (name, surface) in parse(&path, &bytes)? {
                 self.defined.entry(name).or_insert(surface);
+            }
+            if self.defined.len() as u64 > MATERIALS_MAX {
+                return Err(InputError::new(&path, too_many()));
             }
         }
         Ok(())
     }
+}
+
+fn too_many() -> String {
+    format!("the materials exceed the limit of {MATERIALS_MAX}")
 }
 
 /// A path that stays in or below the folder; Windows' separators count too.
@@ -85,8 +108,11 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Defined, InputError> {
             continue;
         }
         if keyword == b"newmtl" {
+            if names.len() as u64 == MATERIALS_MAX {
+                return Err(error(too_many()));
+            }
             let _ = writeln!(clean, "newmtl {}", names.len());
-            names.push(rest(&s.text));
+            names.push(name(&s.text).map_err(error)?);
             continue;
         }
         if names.is_empty() {

@@ -6,23 +6,25 @@
 mod header;
 mod row;
 
-use std::io::Cursor;
 use std::path::Path;
 
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{ElementDef, Encoding, PropertyAccess};
 
 use super::text::{lines, quote};
-use super::{Mesh, Notes, read, too_large};
+use super::{Mesh, Notes, TRIANGLES_MAX, too_large};
 use crate::error::InputError;
 use header::Header;
 use row::{Face, Other, Vertex};
 
+/// Most entries that the lists of one item may have together: the corners of a face of
+/// as many triangles as a mesh may have.
+const ENTRIES_MAX: u64 = TRIANGLES_MAX + 2;
+
 /// Loads a PLY file.
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Mesh, InputError> {
-    let bytes = read::unpacked(path, bytes)?;
-    let header = Header::read(path, &bytes)?;
-    let mut body = Body::new(path, &header, &bytes);
+    let header = Header::read(path, bytes)?;
+    let mut body = Body::new(path, &header, bytes);
     let mut positions: Vec<[f32; 3]> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     let mut notes = Notes::default();
@@ -66,7 +68,8 @@ enum Body<'a> {
     },
     Binary {
         path: &'a Path,
-        bytes: Cursor<&'a [u8]>,
+        /// What has not been read yet.
+        bytes: &'a [u8],
         big_endian: bool,
     },
 }
@@ -82,7 +85,7 @@ impl<'a> Body<'a> {
             },
             encoding => Self::Binary {
                 path,
-                bytes: Cursor::new(rest),
+                bytes: rest,
                 big_endian: encoding == Encoding::BinaryBigEndian,
             },
         }
@@ -122,6 +125,7 @@ impl<'a> Body<'a> {
                         let message = format!("{name} {item} of {count}: {what}");
                         InputError::new(&path, message)
                     };
+                    row::check_lists(bytes, *big_endian, element).map_err(error)?;
                     let read = match big_endian {
                         true => parser.read_big_endian_element(bytes, element),
                         false => parser.read_little_endian_element(bytes, element),
@@ -138,10 +142,7 @@ impl<'a> Body<'a> {
     fn left_over(self) -> Option<String> {
         let (n, what) = match self {
             Self::Ascii { lines, .. } => (lines.count(), "lines"),
-            Self::Binary { bytes, .. } => {
-                let at = usize::try_from(bytes.position()).unwrap_or(usize::MAX);
-                (bytes.get_ref().len().saturating_sub(at), "bytes")
-            }
+            Self::Binary { bytes, .. } => (bytes.len(), "bytes"),
         };
         (n > 0).then(|| format!("{n} {what} after the last item ignored"))
     }

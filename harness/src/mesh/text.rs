@@ -5,6 +5,9 @@ use std::borrow::Cow;
 /// Characters of a value that an error shows.
 const SHOWN: usize = 40;
 
+/// Most bytes of a name.
+const NAME_MAX: usize = 1 << 10;
+
 /// A value as an error shows it: printable, and not too long.
 pub(super) fn quote(word: &[u8]) -> String {
     // A character has up to four bytes.
@@ -114,11 +117,18 @@ pub(super) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// What follows the first word, trimmed: a name that may hold blanks.
-pub(super) fn rest(text: &[u8]) -> String {
+pub(super) fn name(text: &[u8]) -> Result<String, String> {
     let text = text.trim_ascii();
     let word = text.iter().position(u8::is_ascii_whitespace);
-    let rest = word.map_or(&[][..], |at| &text[at..]);
-    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+    let name = word.map_or(&[][..], |at| &text[at..]).trim_ascii();
+    match name.len() > NAME_MAX {
+        false => Ok(String::from_utf8_lossy(name).into_owned()),
+        true => Err(format!(
+            "{} has {} bytes; names have at most {NAME_MAX}",
+            quote(name),
+            name.len()
+        )),
+    }
 }
 
 /// A finite `f32`, or what is wrong with the word.

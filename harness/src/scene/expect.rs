@@ -6,6 +6,11 @@ use triptych_spec::raster::cover;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
+use super::value::at_most;
+
+/// Most rectangles and lists of a scene: a rectangle may have all of its pixels.
+const STATED_MAX: usize = 1 << 10;
+
 /// What is known of a scene without running anything. What is left out is not
 /// checked. Pixels count from 0 at the top left.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -22,10 +27,10 @@ pub struct Expect {
     /// Covered pairs of pixel and triangle, opaque or not, hidden or not.
     pub covered: Option<u64>,
     /// How many triangles cover each pixel of a rectangle.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "at_most::<STATED_MAX, _, _>")]
     pub cover: Vec<Cover>,
     /// Single pixels' lists.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "at_most::<STATED_MAX, _, _>")]
     pub lists: Vec<List>,
 }
 

@@ -6,8 +6,13 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::expect::Expect;
-use super::value::{Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share};
+use super::value::{
+    Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
+};
 use crate::generate::Generator;
+
+/// Most lights of a scene: each shines on every triangle.
+const LIGHTS_MAX: usize = 64;
 
 /// A scene.toml.
 #[derive(Clone, Debug, Deserialize)]
@@ -26,7 +31,10 @@ pub struct SceneFile {
     /// Left out: a perspective view of everything.
     pub camera: Option<Spanned<CameraEntry>>,
     /// Left out: [`SceneFile::default_lights`].
-    #[serde(default = "SceneFile::default_lights")]
+    #[serde(
+        default = "SceneFile::default_lights",
+        deserialize_with = "at_most::<LIGHTS_MAX, _, _>"
+    )]
     pub light: Vec<Light>,
     /// What meshes are made of.
     #[serde(default)]

@@ -1,16 +1,18 @@
 //! From a parsed scene and its meshes to [`Scene`].
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use toml::Spanned;
 use triptych_spec::camera::{Camera, ENTRY_MAX, Projection};
 use triptych_spec::matrix::Matrix;
 use triptych_spec::scene::{Scene, Triangle, Vertex};
 
-use super::file::{CameraEntry, MeshEntry};
+use super::file::{CameraEntry, MaterialEntry, MeshEntry};
 use super::source::Source;
 use super::value::{Point, Scale};
 use super::{LoadError, Parsed, fit, shade};
 use crate::error::InputError;
-use crate::mesh::{TRIANGLES_MAX, VERTICES_MAX};
+use crate::mesh::Named;
 
 /// Largest entry of a mesh's placement. World coordinates then stay below 1e90,
 /// and their products in shading below the largest `f64`.
@@ -28,6 +30,9 @@ struct Surface {
     reflectance: [f64; 3],
     opacity: f64,
 }
+
+/// The scene's materials by name.
+type Materials<'a> = BTreeMap<&'a str, Surface>;
 
 /// One mesh entry, resolved.
 struct Placed<'a> {
@@ -52,12 +57,11 @@ impl Placed<'_> {
 }
 
 pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<Scene, LoadError> {
-    check_names(parsed)?;
+    let materials = materials(parsed)?;
     let entries = parsed.file.mesh.iter().zip(sources);
     let placed: Vec<Placed> = entries
-        .map(|(entry, source)| place(parsed, entry, source))
+        .map(|(entry, source)| place(parsed, &materials, entry, source))
         .collect::<Result<_, _>>()?;
-    check_limits(parsed, &placed)?;
     let size = parsed.file.size.0;
     let view = view(parsed, &placed)?;
     let mut scene = Scene {
@@ -74,38 +78,30 @@ pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<Scene, Load
     Ok(scene)
 }
 
-/// Refuses two materials of one name.
-fn check_names(parsed: &Parsed) -> Result<(), InputError> {
-    let mut seen = std::collections::BTreeSet::new();
-    for name in parsed.file.material.iter().map(|m| &m.name) {
-        if !seen.insert(name.get_ref()) {
+/// The scene's materials by name. Refuses two of one name.
+fn materials<'a>(parsed: &'a Parsed) -> Result<Materials<'a>, InputError> {
+    let mut materials = Materials::new();
+    for MaterialEntry {
+        name,
+        colour,
+        opacity,
+    } in &parsed.file.material
+    {
+        let surface = Surface {
+            reflectance: colour.0,
+            opacity: opacity.0,
+        };
+        if materials.insert(name.get_ref(), surface).is_some() {
             let message = format!("material `{}` is defined twice", name.get_ref());
             return Err(parsed.error(name.span(), message));
         }
     }
-    Ok(())
-}
-
-/// Refuses what exceeds the limits before anything is made.
-fn check_limits(parsed: &Parsed, placed: &[Placed]) -> Result<(), InputError> {
-    let (mut triangles, mut vertices) = (0_u64, 0_u64);
-    for mesh in placed {
-        let copies = mesh.worlds.len() as u64;
-        // Both factors are below 2^32: a mesh and a scene file have limits.
-        triangles += copies * mesh.source.mesh.triangles.len() as u64;
-        vertices += copies * mesh.source.mesh.positions.len() as u64;
-        if triangles > TRIANGLES_MAX || vertices > VERTICES_MAX {
-            let message = format!(
-                "{triangles} triangles and {vertices} vertices up to here exceed the limits of {TRIANGLES_MAX} and {VERTICES_MAX}"
-            );
-            return Err(parsed.error(mesh.entry.span(), message));
-        }
-    }
-    Ok(())
+    Ok(materials)
 }
 
 fn place<'a>(
     parsed: &Parsed,
+    materials: &Materials,
     entry: &'a Spanned<MeshEntry>,
     source: &'a Source,
 ) -> Result<Placed<'a>, LoadError> {
@@ -124,7 +120,7 @@ fn place<'a>(
     Ok(Placed {
         source,
         worlds,
-        surfaces: surfaces(parsed, e, source)?,
+        surfaces: surfaces(parsed, materials, e, source)?,
         entry,
     })
 }
@@ -140,28 +136,26 @@ fn matrix(Scale(s): Scale, Point(r): Point, Point(t): Point) -> Matrix {
 /// `material`, else what the mesh's library defines, else [`DEFAULT`].
 fn surfaces(
     parsed: &Parsed,
+    materials: &Materials,
     entry: &MeshEntry,
     source: &Source,
 ) -> Result<Vec<Surface>, InputError> {
     let named = &source.mesh.materials;
+    let names: BTreeSet<&str> = named[1..].iter().map(|n| n.name.as_str()).collect();
     for key in entry.materials.keys() {
-        if !named.iter().any(|n| n.name == *key.get_ref()) {
-            let known: Vec<&str> = named[1..].iter().map(|n| n.name.as_str()).collect();
+        if !names.contains(key.get_ref().as_str()) {
+            let known = listed(names.iter().copied());
             let message = format!(
-                "the mesh has no material `{}`; it has: {}",
-                key.get_ref(),
-                known.join(", ")
+                "the mesh has no material `{}`; it has: {known}",
+                key.get_ref()
             );
             return Err(parsed.error(key.span(), message));
         }
     }
-    let resolve = |n: &crate::mesh::Named| {
-        let single = entry.materials.iter().find(|(k, _)| *k.get_ref() == n.name);
-        let chosen = single
-            .map(|(_, material)| material)
-            .or(entry.material.as_ref());
-        match (chosen, n.defined) {
-            (Some(material), _) => find_material(parsed, material),
+    let resolve = |n: &Named| {
+        let single = entry.materials.get(n.name.as_str());
+        match (single.or(entry.material.as_ref()), n.defined) {
+            (Some(material), _) => find_material(parsed, materials, material),
             (None, Some((reflectance, opacity))) => Ok(Surface {
                 reflectance,
                 opacity,
@@ -172,29 +166,33 @@ fn surfaces(
     named.iter().map(resolve).collect()
 }
 
-fn find_material(parsed: &Parsed, name: &Spanned<String>) -> Result<Surface, InputError> {
-    let materials = &parsed.file.material;
-    match materials
-        .iter()
-        .find(|m| m.name.get_ref() == name.get_ref())
-    {
-        Some(m) => Ok(Surface {
-            reflectance: m.colour.0,
-            opacity: m.opacity.0,
-        }),
-        None => {
-            let known: Vec<&str> = materials
-                .iter()
-                .map(|m| m.name.get_ref().as_str())
-                .collect();
+fn find_material(
+    parsed: &Parsed,
+    materials: &Materials,
+    name: &Spanned<String>,
+) -> Result<Surface, InputError> {
+    materials
+        .get(name.get_ref().as_str())
+        .copied()
+        .ok_or_else(|| {
+            let known = listed(materials.keys().copied());
             let message = format!(
-                "no [[material]] is named `{}`; there are: {}",
-                name.get_ref(),
-                known.join(", ")
+                "no [[material]] is named `{}`; there are: {known}",
+                name.get_ref()
             );
-            Err(parsed.error(name.span(), message))
-        }
+            parsed.error(name.span(), message)
+        })
+}
+
+/// Names as an error shows them: not all of a thousand.
+fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const SHOWN: usize = 12;
+    let more = names.len().saturating_sub(SHOWN);
+    let mut shown = names.take(SHOWN).collect::<Vec<_>>().join(", ");
+    if more > 0 {
+        shown += &format!(" and {more} more");
     }
+    shown
 }
 
 /// Clip space from world space.
@@ -282,7 +280,7 @@ fn append(
     Ok(())
 }
 
-/// A row number; [`check_limits`] has bounded it.
+/// A row number; limits of meshes and scenes have bounded it.
 fn row(n: usize) -> u32 {
     u32::try_from(n).expect("scenes have fewer than 2^32 rows")
 }

@@ -9,7 +9,7 @@ use super::file::MeshEntry;
 use super::{LoadError, MeshStats, Parsed, Stats};
 use crate::corpus;
 use crate::error::InputError;
-use crate::mesh::{self, Mesh};
+use crate::mesh::{self, Intake, MATERIALS_MAX, Mesh, TRIANGLES_MAX, VERTICES_MAX};
 
 /// What installs the meshes of packages.
 const INSTALL: &str = "./x setup";
@@ -31,12 +31,58 @@ pub(super) fn bare(path: &Path) -> Spanned<MeshEntry> {
 }
 
 /// Loads every mesh of a scene, in order, and adds what was read to the digest.
-pub(super) fn load_all(parsed: &Parsed, digest: &mut Sha256) -> Result<Vec<Source>, LoadError> {
-    let load = |(number, entry)| load_one(parsed, number, entry, digest);
-    (0_u64..).zip(&parsed.file.mesh).map(load).collect()
+pub(super) fn load_all(
+    intake: &mut Intake,
+    parsed: &Parsed,
+    digest: &mut Sha256,
+) -> Result<Vec<Source>, LoadError> {
+    let mut totals = Totals::default();
+    let mut sources = Vec::new();
+    for (number, entry) in (0..).zip(&parsed.file.mesh) {
+        let source = load_one(intake, parsed, number, entry, digest)?;
+        let added = totals.add(&source);
+        added.map_err(|message| parsed.error(entry.span(), message))?;
+        sources.push(source);
+    }
+    Ok(sources)
+}
+
+/// What the meshes so far add up to, with all their copies.
+#[derive(Default)]
+struct Totals {
+    triangles: u64,
+    vertices: u64,
+    materials: u64,
+}
+
+impl Totals {
+    /// Adds a mesh, or says which limit it exceeds.
+    fn add(&mut self, source: &Source) -> Result<(), String> {
+        let mesh = &source.mesh;
+        // A mesh without copies takes room nevertheless. Neither factor reaches 2^32:
+        // meshes and scene files have limits.
+        let copies = source.stats.instances.max(1);
+        self.triangles += copies * mesh.triangles.len() as u64;
+        self.vertices += copies * mesh.positions.len() as u64;
+        self.materials += mesh.materials.len() as u64 - 1;
+        let (triangles, vertices) = (self.triangles, self.vertices);
+        if triangles > TRIANGLES_MAX || vertices > VERTICES_MAX {
+            return Err(format!(
+                "{triangles} triangles and {vertices} vertices up to here exceed the limits of {TRIANGLES_MAX} and {VERTICES_MAX}"
+            ));
+        }
+        match self.materials > MATERIALS_MAX {
+            false => Ok(()),
+            true => Err(format!(
+                "{} materials of meshes up to here exceed the limit of {MATERIALS_MAX}",
+                self.materials
+            )),
+        }
+    }
 }
 
 fn load_one(
+    intake: &mut Intake,
     parsed: &Parsed,
     number: u64,
     entry: &Spanned<MeshEntry>,
@@ -51,14 +97,13 @@ fn load_one(
             } else {
                 folder.join(file)
             };
-            load_file(parsed, entry, &path, format!("file {file}"), digest)
+            load_file(intake, parsed, entry, &path, digest)
         }
         (None, Some(package), None) => {
-            let (path, pinned) = find_package(parsed, package)?;
-            let name = package.get_ref();
-            let source = load_file(parsed, entry, &path, format!("package {name}"), digest)?;
+            let (path, pinned) = find_package(intake, parsed, package)?;
+            let source = load_file(intake, parsed, entry, &path, digest)?;
             if is_hair(&path) {
-                check_layout(&mesh::layout_of(&path))?;
+                check_layout(intake, &mesh::layout_of(&path))?;
             }
             if source.stats.sha256.as_deref() != Some(&pinned) {
                 let found = source.stats.sha256.unwrap_or_default();
@@ -79,12 +124,7 @@ fn load_one(
                 .get_ref()
                 .mesh(seed)
                 .map_err(|message| parsed.error(generator.span(), message))?;
-            Ok(Source::new(
-                format!("generate {}", generator.get_ref().name()),
-                None,
-                mesh,
-                e,
-            ))
+            Ok(Source::new(None, mesh, e))
         }
         _ => {
             let message = "a mesh needs exactly one of file, package and generate";
@@ -94,21 +134,24 @@ fn load_one(
 }
 
 fn load_file(
+    intake: &mut Intake,
     parsed: &Parsed,
     entry: &Spanned<MeshEntry>,
     path: &Path,
-    source: String,
     digest: &mut Sha256,
 ) -> Result<Source, LoadError> {
-    let bytes = mesh::read(path, mesh::BYTES_MAX)?;
+    let bytes = intake.read(path, mesh::BYTES_MAX)?;
     let sha256 = hex(&Sha256::digest(&bytes));
     digest.update(sha256.as_bytes());
     if is_hair(path) {
-        digest.update(sha256_of(&mesh::layout_of(path))?);
+        digest.update(sha256_of(intake, &mesh::layout_of(path))?);
     }
     let mesh = match (is_hair(path), entry.get_ref().hair) {
-        (true, hair) => mesh::load_hair(path, &bytes, hair.unwrap_or_default().stride)?,
-        (false, None) => mesh::load(path, &bytes)?,
+        (true, hair) => {
+            let stride = hair.unwrap_or_default().stride;
+            mesh::load_hair(intake, path, bytes, stride)?
+        }
+        (false, None) => mesh::load(intake, path, bytes)?,
         (false, Some(_)) => {
             let message = "hair is for a .bin.gz of strands only";
             return Err(parsed.error(entry.span(), message).into());
@@ -117,23 +160,24 @@ fn load_file(
     for named in &mesh.materials {
         digest.update(format!("{named:?}"));
     }
-    Ok(Source::new(source, Some(sha256), mesh, entry.get_ref()))
+    Ok(Source::new(Some(sha256), mesh, entry.get_ref()))
 }
 
 fn is_hair(path: &Path) -> bool {
     path.to_string_lossy().ends_with(".bin.gz")
 }
 
-fn sha256_of(path: &Path) -> Result<String, InputError> {
-    Ok(hex(&Sha256::digest(&mesh::read(path, mesh::BYTES_MAX)?)))
+fn sha256_of(intake: &mut Intake, layout: &Path) -> Result<String, InputError> {
+    let bytes = intake.read(layout, mesh::LAYOUT_MAX)?;
+    Ok(hex(&Sha256::digest(&bytes)))
 }
 
 /// Holds the layout of a package's hair against the hash that its own row pins.
-fn check_layout(layout: &Path) -> Result<(), InputError> {
+fn check_layout(intake: &mut Intake, layout: &Path) -> Result<(), InputError> {
     let name = layout.file_name().unwrap_or_default().to_string_lossy();
-    let rows = mesh::lock::read()?;
+    let rows = mesh::lock::read(intake)?;
     let pinned = rows.iter().find(|row| row.name == name);
-    let found = sha256_of(layout)?;
+    let found = sha256_of(intake, layout)?;
     match pinned {
         Some(row) if row.sha256 == found => Ok(()),
         Some(row) => {
@@ -148,7 +192,13 @@ fn check_layout(layout: &Path) -> Result<(), InputError> {
 }
 
 impl Source {
-    fn new(source: String, sha256: Option<String>, mesh: Mesh, entry: &MeshEntry) -> Self {
+    fn new(sha256: Option<String>, mesh: Mesh, entry: &MeshEntry) -> Self {
+        let source = match (&entry.file, &entry.package, &entry.generate) {
+            (Some(file), ..) => format!("file {file}"),
+            (_, Some(package), _) => format!("package {package}"),
+            (.., Some(generator)) => format!("generate {}", generator.get_ref().name()),
+            (None, None, None) => String::new(),
+        };
         let stats = MeshStats {
             source,
             sha256,
@@ -163,17 +213,18 @@ impl Source {
 
 /// Where a package's mesh lies, and the hash that its row pins.
 fn find_package(
+    intake: &mut Intake,
     parsed: &Parsed,
     package: &Spanned<String>,
 ) -> Result<(PathBuf, String), LoadError> {
-    let rows = mesh::lock::read()?;
+    let rows = mesh::lock::read(intake)?;
     let name = package.get_ref().as_str();
     let Some(row) = rows.iter().find(|r| r.name == name) else {
         let message = format!("`{name}` is no row of corpus/meshes.lock");
         return Err(parsed.error(package.span(), message).into());
     };
     let path = corpus::meshes().join(name);
-    if !path.exists() {
+    if !intake.has(&path) {
         return Err(LoadError::Missing {
             mesh: name.to_owned(),
             command: INSTALL,

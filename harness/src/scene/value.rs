@@ -1,7 +1,11 @@
 //! Values of a scene file that are checked where they are read, so that an error
 //! carries the line of the value itself.
 
+use std::fmt;
+use std::marker::PhantomData;
+
 use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::TARGET_MAX;
 
@@ -179,5 +183,35 @@ impl TryFrom<toml::Value> for Scale {
         };
         let axes = axes.ok_or_else(|| format!("{v} is neither a number nor three"))?;
         Point::try_from(axes).map(|Point(s)| Self(s))
+    }
+}
+
+/// A list of at most `N` items; reading stops there.
+pub fn at_most<'de, const N: usize, T, D>(list: D) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    list.deserialize_seq(AtMost::<N, T>(PhantomData))
+}
+
+struct AtMost<const N: usize, T>(PhantomData<T>);
+
+impl<'de, const N: usize, T: Deserialize<'de>> Visitor<'de> for AtMost<N, T> {
+    type Value = Vec<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "an array of at most {N} items")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Vec<T>, A::Error> {
+        let mut items = Vec::new();
+        while let Some(item) = list.next_element()? {
+            if items.len() == N {
+                return Err(A::Error::custom(format!("more than {N} items, the limit")));
+            }
+            items.push(item);
+        }
+        Ok(items)
     }
 }

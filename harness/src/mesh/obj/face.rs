@@ -1,69 +1,100 @@
 //! Corners of OBJ faces: `a`, `a/b`, `a//c` or `a/b/c`, counted from 1, or from
 //! the end when negative.
 
-use super::quote;
+use super::super::TRIANGLES_MAX;
+use super::{quote, statements, words};
 
-/// An index that named something not yet defined when it was read.
-struct Ahead {
-    line: usize,
-    what: usize,
-    index: u64,
+/// How many there are of what a corner names.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Counts {
+    pub(super) vertices: u64,
+    pub(super) textures: u64,
+    pub(super) normals: u64,
 }
 
-const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+impl Counts {
+    /// Of a whole file: a face may name what comes after it.
+    pub(super) fn of(bytes: &[u8]) -> Self {
+        let mut counts = Self::default();
+        for statement in statements(bytes) {
+            match words(&statement.text).next() {
+                Some(b"v") => counts.vertices += 1,
+                Some(b"vt") => counts.textures += 1,
+                Some(b"vn") => counts.normals += 1,
+                _ => {}
+            }
+        }
+        counts
+    }
+}
 
 /// What is known of faces so far.
-#[derive(Default)]
 pub(super) struct Faces {
+    /// What precedes.
+    pub(super) seen: Counts,
+    /// What the whole file has.
+    all: Counts,
     /// Triangles after cutting polygons into fans.
-    pub(super) triangles: u64,
-    /// Texture coordinates so far.
-    pub(super) textures: u64,
-    /// Normals so far.
-    pub(super) normals: u64,
-    ahead: Vec<Ahead>,
+    triangles: u64,
 }
 
 impl Faces {
-    /// Absolute vertex indices of a face, from 1.
-    pub(super) fn corners<'w>(
-        &mut self,
-        line: usize,
-        words: impl Iterator<Item = &'w [u8]>,
-        vertices: u64,
-    ) -> Result<Vec<u64>, String> {
-        let counts = [vertices, self.textures, self.normals];
-        words.map(|word| self.corner(line, word, counts)).collect()
+    pub(super) fn new(all: Counts) -> Self {
+        Self {
+            seen: Counts::default(),
+            all,
+            triangles: 0,
+        }
     }
 
-    fn corner(&mut self, line: usize, word: &[u8], counts: [u64; 3]) -> Result<u64, String> {
-        let mut vertex = 0;
-        for (what, part) in word.split(|b| *b == b'/').enumerate() {
-            if what > 2 {
-                return Err(format!("{} has more than three parts", quote(word)));
+    /// Absolute vertex indices of a face, from 1. Stops where its triangles exceed the
+    /// limit.
+    pub(super) fn corners<'w>(
+        &mut self,
+        words: impl Iterator<Item = &'w [u8]>,
+    ) -> Result<Vec<u64>, String> {
+        let most = TRIANGLES_MAX - self.triangles + 2;
+        let mut corners = Vec::new();
+        for word in words {
+            if corners.len() as u64 == most {
+                return Err(format!(
+                    "after {} triangles, this face exceeds the limit of {TRIANGLES_MAX}",
+                    self.triangles
+                ));
             }
+            corners.push(self.corner(word)?);
+        }
+        self.triangles += (corners.len() as u64).saturating_sub(2);
+        Ok(corners)
+    }
+
+    fn corner(&self, word: &[u8]) -> Result<u64, String> {
+        let Self { seen, all, .. } = self;
+        let kinds = [
+            ("vertex", seen.vertices, all.vertices),
+            ("texture coordinate", seen.textures, all.textures),
+            ("normal", seen.normals, all.normals),
+        ];
+        let mut vertex = 0;
+        for (at, part) in word.split(|b| *b == b'/').enumerate() {
+            let Some(&(what, seen, all)) = kinds.get(at) else {
+                return Err(format!("{} has more than three parts", quote(word)));
+            };
             // Only the vertex is a must: `1//3` and `1//` are common.
-            if what > 0 && part.is_empty() {
+            if at > 0 && part.is_empty() {
                 continue;
             }
-            let index = absolute(part, WHAT[what], counts[what])?;
-            if index > counts[what] {
-                self.ahead.push(Ahead { line, what, index });
+            let index = absolute(part, what, seen)?;
+            if index > all {
+                return Err(format!(
+                    "{what} {index} is out of range; the file has {all}"
+                ));
             }
-            if what == 0 {
+            if at == 0 {
                 vertex = index;
             }
         }
         Ok(vertex)
-    }
-
-    /// The first index that names something the whole file does not have.
-    pub(super) fn out_of_range(&self, vertices: u64) -> Option<(usize, String)> {
-        let counts = [vertices, self.textures, self.normals];
-        let bad = self.ahead.iter().find(|a| a.index > counts[a.what])?;
-        let (what, index, count) = (WHAT[bad.what], bad.index, counts[bad.what]);
-        let message = format!("{what} {index} is out of range; the file has {count}");
-        Some((bad.line, message))
     }
 }
 

@@ -125,6 +125,11 @@ impl Header {
 /// Bytes of a property in binary; of a list, its count alone.
 fn bytes_of(property: &PropertyType) -> u64 {
     let (PropertyType::Scalar(t) | PropertyType::List(t, _)) = property;
+    width(t)
+}
+
+/// Bytes of a number in binary.
+pub(super) fn width(t: &ScalarType) -> u64 {
     match t {
         ScalarType::Char | ScalarType::UChar => 1,
         ScalarType::Short | ScalarType::UShort => 2,

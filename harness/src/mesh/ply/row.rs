@@ -2,10 +2,13 @@
 
 use std::fmt::Write as _;
 
-use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType};
+use ply_rs_bw::ply::{
+    ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
 
 use super::super::text::{quote, words};
-use super::header::CORNERS;
+use super::ENTRIES_MAX;
+use super::header::{CORNERS, width};
 
 /// The position of a vertex.
 pub(super) struct Vertex([f32; 3]);
@@ -85,14 +88,68 @@ impl PropertyAccess for Other {
     }
 }
 
+/// Refuses an item, in binary, whose lists have more than [`ENTRIES_MAX`] entries. The
+/// parser would make room for all that the file has.
+pub(super) fn check_lists(
+    mut bytes: &[u8],
+    big_endian: bool,
+    element: &ElementDef,
+) -> Result<(), String> {
+    let mut entries = 0;
+    for property in element.properties.values() {
+        let length = match &property.data_type {
+            PropertyType::Scalar(t) => width(t),
+            PropertyType::List(counted, t) => {
+                // What is missing, and a negative count, the parser names.
+                let Some((count, rest)) = number(bytes, big_endian, counted) else {
+                    return Ok(());
+                };
+                entries += count;
+                if entries > ENTRIES_MAX {
+                    return Err(too_many(entries));
+                }
+                bytes = rest;
+                count * width(t)
+            }
+        };
+        let Some(rest) = usize::try_from(length).ok().and_then(|n| bytes.get(n..)) else {
+            return Ok(());
+        };
+        bytes = rest;
+    }
+    Ok(())
+}
+
+fn too_many(entries: u64) -> String {
+    format!("its lists have {entries} entries or more, and {ENTRIES_MAX} are the limit")
+}
+
+/// The non-negative integer that bytes start with, and what follows it.
+fn number<'a>(bytes: &'a [u8], big_endian: bool, t: &ScalarType) -> Option<(u64, &'a [u8])> {
+    let (digits, rest) = bytes.split_at_checked(usize::try_from(width(t)).ok()?)?;
+    let push = |n: u64, byte: &u8| n << 8 | u64::from(*byte);
+    let number = match big_endian {
+        true => digits.iter().fold(0, push),
+        false => digits.iter().rev().fold(0, push),
+    };
+    let signed = matches!(t, ScalarType::Char | ScalarType::Short | ScalarType::Int);
+    let negative = signed && number >> (8 * digits.len() - 1) == 1;
+    (!negative).then_some((number, rest))
+}
+
 /// A line as the parser reads it: it knows neither `.5` nor `5.` nor `nan`, and
 /// stops at bytes that are not UTF-8. What is not finite becomes `1e999`, which
 /// matters in a coordinate only.
 pub(super) fn rewrite(line: &[u8], element: &ElementDef) -> Result<String, String> {
     let scalars = |t: &PropertyType| matches!(t, PropertyType::Scalar(_));
     let plain = element.properties.values().all(|p| scalars(&p.data_type));
+    // A list has a count, too.
+    let most = ENTRIES_MAX + element.properties.len() as u64;
     let mut text = String::with_capacity(line.len() + 8);
     for (i, word) in words(line).enumerate() {
+        if i as u64 == most {
+            return Err(too_many(most));
+        }
         let digits = word.strip_prefix(b"-").unwrap_or(word);
         let read = std::str::from_utf8(word).unwrap_or_default();
         if !digits.is_empty() && digits.iter().all(u8::is_ascii_digit) {
