@@ -1,6 +1,7 @@
 //! A-buffer on the device: opaque, build, sort, resolve, in bands of rows.
 
 mod attempt;
+mod buffers;
 
 use std::time::Duration;
 
@@ -8,9 +9,10 @@ use triptych_spec::abuffer::{Lists, Opaque};
 
 use crate::error::GpuError;
 use crate::frame::Band;
-use crate::raster::{Next, Rasterizer, after, first_capacity, nodes_max};
-use attempt::{Buffers, HEADER, Run};
-pub use attempt::{PROGRESS, STEPS};
+use crate::raster::{Attempts, Rasterizer};
+pub use attempt::STEPS;
+use attempt::{Done, Run, Tried};
+pub use buffers::PROGRESS;
 
 /// Another leg's results in place of the stages before one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +30,7 @@ pub struct Given<'a> {
 pub struct Options<'a> {
     /// Start from these instead of from triangles.
     pub given: Option<Given<'a>>,
-    /// Nodes of the first attempt, as far as the adapter can bind so many; `None`
-    /// leaves it to the host.
+    /// Nodes of the first attempt, as far as they fit; `None` leaves it to the host.
     pub capacity: Option<u32>,
     /// Draw opaque triangles.
     pub opaque: bool,
@@ -95,93 +96,60 @@ pub fn run(
     is_opaque: impl Fn(u32) -> bool,
     mut inspect: impl FnMut(Band, &Lists) -> Option<u32>,
 ) -> Result<Abuffer, GpuError> {
-    let size = rasterizer.size;
     let mut result = Abuffer::default();
-    let mut capacity = match options.given {
-        Some(given) => given.lists.attempts,
-        None => options.capacity.unwrap_or_else(|| first_capacity(size)),
-    };
-    let mut bands = vec![Band::whole(size)];
-    while let Some(band) = bands.pop() {
-        if let (false, Some([upper, lower])) = (fits(rasterizer, band), band.halves()) {
-            bands.extend([lower, upper]);
-            continue;
-        }
-        capacity = capacity.min(nodes_max(rasterizer.gpu));
-        let times = Times::default();
-        let mut run = Run {
+    let mut attempts = attempts(rasterizer, options);
+    while let Some((band, capacity)) = attempts.next() {
+        let run = Run {
             rasterizer,
             options,
             band,
             capacity,
-            times,
+            times: Times::default(),
         };
-        let buffers = run.buffers()?;
-        run.fill(&buffers, &is_opaque)?;
-        let built = run.lists(&buffers)?;
-        match after(rasterizer.gpu, "build", band, built.attempts, capacity)? {
-            Next::Done => {
-                let longest = inspect(band, &built);
-                result.finish(run, &buffers, built, longest)?;
+        let follow = !result.damaged && result.endless.is_none();
+        match run.attempt(&is_opaque, |lists| inspect(band, lists), follow) {
+            Ok(Tried::Done(done)) => result.add(*done),
+            Ok(Tried::Overflowed(lists)) => {
+                attempts.overflowed(band, lists.attempts)?;
+                result.overflowed.push((band, lists));
             }
-            Next::Resize(exact) => {
-                result.overflowed.push((band, built));
-                capacity = exact;
-                bands.push(band);
-            }
-            Next::Split([upper, lower]) => {
-                result.overflowed.push((band, built));
-                bands.extend([lower, upper]);
-            }
+            Err(error) => attempts.failed(band, capacity, error)?,
         }
     }
     Ok(result)
 }
 
+/// What to attempt: given lists take exactly their room, others are yet to be counted.
+fn attempts(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Attempts {
+    let Rasterizer { gpu, size, .. } = *rasterizer;
+    let need = buffers::need(gpu);
+    if let Some(Given { lists, .. }) = options.given {
+        let rows = buffers::nodes_of_rows(lists, size.width);
+        return Attempts::new(gpu, size, need, None).with_rows(rows);
+    }
+    let capacity = if options.lists {
+        options.capacity
+    } else {
+        Some(0)
+    };
+    Attempts::new(gpu, size, need, capacity)
+}
+
 impl Abuffer {
-    /// Adds a band whose lists are built: sorts and resolves them, unless any band's
-    /// lists are damaged.
-    fn finish(
-        &mut self,
-        mut run: Run<'_, '_>,
-        buffers: &Buffers,
-        built: Lists,
-        longest: Option<u32>,
-    ) -> Result<(), GpuError> {
-        self.opaque.key.extend(run.read(&buffers.opaque_key)?);
-        self.opaque.prim.extend(run.read(&buffers.opaque_prim)?);
-        self.damaged |= longest.is_none();
-        let mut sorted = None;
-        if let (false, None, Some(longest)) = (self.damaged, self.endless, longest) {
-            match run.finish(buffers, longest, &mut self.image) {
-                Ok(lists) => sorted = Some(lists),
-                Err(GpuError::Endless { stage, .. }) => self.endless = Some(stage),
-                Err(error) => return Err(error),
-            }
-        }
-        if sorted.is_none() {
+    /// Adds a band. There is no picture unless every band has its part.
+    fn add(&mut self, done: Done) {
+        self.opaque.key.extend(done.opaque.key);
+        self.opaque.prim.extend(done.opaque.prim);
+        self.damaged |= done.damaged;
+        self.endless = self.endless.or(done.endless);
+        self.image.extend(done.image);
+        if done.band.sorted.is_none() {
             self.image.clear();
         }
-        self.times.add(run.times);
-        self.bands.push(BandResult {
-            band: run.band,
-            built,
-            sorted,
-        });
-        Ok(())
+        self.times.add(done.times);
+        self.bands.push(done.band);
     }
 }
-
-/// Whether a band's pixels fit a dispatch, and their largest buffer a binding. What
-/// its nodes need shows when they are counted.
-fn fits(rasterizer: &Rasterizer<'_>, band: Band) -> bool {
-    let pixels = band.pixels(rasterizer.size);
-    let bytes = HEADER + PROGRESS * u64::from(pixels);
-    pixels <= PIXELS_MAX && bytes <= rasterizer.gpu.binding_limit()
-}
-
-/// Pixels that a dispatch of one workgroup row can serve.
-const PIXELS_MAX: u32 = 65_535 * crate::frame::WORKGROUP;
 
 impl Times {
     fn add(&mut self, other: Self) {

@@ -1,4 +1,6 @@
-//! Adapters, devices, buffers, and reading results back.
+//! Adapters and devices.
+
+mod buffers;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -8,6 +10,9 @@ use crate::error::GpuError;
 pub fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
+    // Where a driver says what it has left, wgpu refuses what exceeds that; some drivers
+    // would go on, and slow down or die later.
+    descriptor.memory_budget_thresholds.for_resource_creation = Some(90);
     let instance = wgpu::Instance::new(descriptor);
     pollster::block_on(instance.enumerate_adapters(backends))
 }
@@ -35,6 +40,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The largest buffer that a kernel may see, in bytes.
     binding_limit: u64,
+    /// Bytes in all that are as good as there, for tests.
+    memory_limit: Option<u64>,
     /// The first thing that went wrong behind our back.
     failure: Arc<Mutex<Option<GpuError>>>,
 }
@@ -79,6 +86,7 @@ impl Gpu {
             device,
             queue,
             binding_limit,
+            memory_limit: None,
             failure,
         })
     }
@@ -100,68 +108,6 @@ impl Gpu {
         self.binding_limit = self.binding_limit.min(bytes);
     }
 
-    /// A storage buffer of `bytes` zeros (at least one word).
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`] if the adapter cannot bind so much.
-    pub fn storage(&self, what: &'static str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
-        let bytes = bytes.max(16);
-        self.check_binding(what, bytes)?;
-        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(what),
-            size: bytes,
-            usage: wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::COPY_SRC
-                | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        }))
-    }
-
-    /// A storage buffer that holds `data`.
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`] if the adapter cannot bind so much.
-    pub fn upload<T: bytemuck::NoUninit>(
-        &self,
-        what: &'static str,
-        data: &[T],
-    ) -> Result<wgpu::Buffer, GpuError> {
-        let bytes: &[u8] = bytemuck::cast_slice(data);
-        let buffer = self.storage(what, bytes.len() as u64)?;
-        self.queue.write_buffer(&buffer, 0, bytes);
-        Ok(buffer)
-    }
-
-    /// A storage buffer of `words` words with the same value.
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`] if the adapter cannot bind so much.
-    pub fn filled(
-        &self,
-        what: &'static str,
-        words: u32,
-        value: u32,
-    ) -> Result<wgpu::Buffer, GpuError> {
-        self.upload(what, &vec![value; words as usize])
-    }
-
-    /// Fails by name if a kernel cannot see `bytes` at once.
-    ///
-    /// # Errors
-    /// [`GpuError::Limit`].
-    pub fn check_binding(&self, what: &'static str, bytes: u64) -> Result<(), GpuError> {
-        let limit = self.binding_limit();
-        if bytes <= limit {
-            return Ok(());
-        }
-        Err(GpuError::Limit {
-            adapter: self.name.clone(),
-            what,
-            needed: bytes,
-            limit,
-        })
-    }
-
     /// Runs what was recorded and waits for it.
     ///
     /// # Errors
@@ -175,37 +121,6 @@ impl Gpu {
     pub fn encoder(&self) -> wgpu::CommandEncoder {
         self.device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
-    }
-
-    /// The first `count` items of a buffer.
-    ///
-    /// # Errors
-    /// Whatever the device reported meanwhile.
-    pub fn read<T: bytemuck::Pod>(
-        &self,
-        buffer: &wgpu::Buffer,
-        count: usize,
-    ) -> Result<Vec<T>, GpuError> {
-        let bytes = (count * size_of::<T>()) as u64;
-        if bytes == 0 {
-            return Ok(Vec::new());
-        }
-        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("staging"),
-            size: bytes,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self.encoder();
-        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
-        self.queue.submit([encoder.finish()]);
-        staging.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-        self.wait()?;
-        let view = staging
-            .slice(..)
-            .get_mapped_range()
-            .map_err(|e| self.refused(&e))?;
-        Ok(bytemuck::pod_collect_to_vec(&view))
     }
 
     /// Whatever has gone wrong so far.
@@ -230,11 +145,13 @@ impl Gpu {
         polled.map(|_| ()).map_err(|e| self.refused(&e))
     }
 
+    /// A refused call, or what went wrong before it; a lost device says so when polled.
     fn refused(&self, error: &dyn std::error::Error) -> GpuError {
-        GpuError::Refused {
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.failure().clone().unwrap_or_else(|| GpuError::Refused {
             adapter: self.name.clone(),
             reason: one_line(error),
-        }
+        })
     }
 }
 

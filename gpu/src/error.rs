@@ -39,6 +39,16 @@ pub enum GpuError {
         /// What the adapter offers.
         limit: u64,
     },
+    /// The device has no memory for what a stage needs; it lives on.
+    #[error("{adapter}: out of memory: {what} needs {bytes} bytes")]
+    Memory {
+        /// The adapter.
+        adapter: String,
+        /// What there is no room for.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
+    },
     /// A kernel that follows lists did not come to their ends.
     #[error("{adapter}: stage {stage} follows a list that does not end")]
     Endless {

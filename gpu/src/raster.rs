@@ -1,6 +1,6 @@
 //! Raster stage on the device: triangles in, fragments out, on two paths.
 
-mod capacity;
+mod attempts;
 mod cover;
 mod work;
 
@@ -13,7 +13,7 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::kernel::{Kernel, Kernels, Pipeline, TARGET_FORMAT};
-pub use capacity::{Next, SATURATED, after, first_capacity, nodes_max};
+pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub use work::Work;
 use work::sampled_rows;
@@ -64,7 +64,7 @@ impl<'g> Rasterizer<'g> {
     /// [`Primitives::prims`].
     ///
     /// # Errors
-    /// More triangles than the adapter can bind.
+    /// More triangles than the adapter can bind, or has memory for.
     pub fn new(
         gpu: &'g Gpu,
         kernels: &'g Kernels,
@@ -87,7 +87,7 @@ impl<'g> Rasterizer<'g> {
             rows: corners.iter().map(|c| sampled_rows(c, bits)).collect(),
             corners: gpu.upload("corners", &corners)?,
             faces: gpu.upload("faces", faces)?,
-            target: target(gpu, primitives.size),
+            target: target(gpu, primitives.size)?,
         })
     }
 
@@ -118,7 +118,7 @@ impl<'g> Rasterizer<'g> {
                 items: batch.items,
                 ..frame
             };
-            let uniform = uniform(self.gpu, &frame);
+            let uniform = self.gpu.uniform("frame", &frame)?;
             let mut all = vec![
                 ("frame", &uniform),
                 ("corners", &self.corners),
@@ -183,7 +183,7 @@ pub fn per_pixel(
 ) -> Result<Duration, GpuError> {
     let gpu = rasterizer.gpu;
     let kernel = rasterizer.kernels.compute(gpu, file, stage)?;
-    let uniform = uniform(gpu, &frame);
+    let uniform = gpu.uniform("frame", &frame)?;
     let mut all = vec![("frame", &uniform), ("faces", &rasterizer.faces)];
     all.extend_from_slice(buffers);
     let group = kernel.bind(gpu, &all);
@@ -201,20 +201,8 @@ pub fn per_pixel(
     Ok(start.elapsed())
 }
 
-pub(crate) fn uniform(gpu: &Gpu, frame: &Frame) -> wgpu::Buffer {
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("frame"),
-        size: size_of::<Frame>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    gpu.queue
-        .write_buffer(&buffer, 0, bytemuck::bytes_of(frame));
-    buffer
-}
-
-fn target(gpu: &Gpu, size: Size) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+fn target(gpu: &Gpu, size: Size) -> Result<wgpu::TextureView, GpuError> {
+    let descriptor = wgpu::TextureDescriptor {
         label: Some("target"),
         size: wgpu::Extent3d {
             width: size.width,
@@ -227,8 +215,10 @@ fn target(gpu: &Gpu, size: Size) -> wgpu::TextureView {
         format: TARGET_FORMAT,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
         view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    };
+    let bytes = u64::from(size.width) * u64::from(size.height);
+    let texture = gpu.make("target", bytes, |device| device.create_texture(&descriptor))?;
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
 fn begin_render<'e>(

@@ -11,7 +11,6 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::kernel::{Kernels, Pipeline};
-use crate::raster::uniform;
 
 /// Vertices of one dispatch (WebGPU: 65,535 workgroups).
 const VERTICES: u32 = 65_535 * WORKGROUP;
@@ -127,7 +126,6 @@ struct Stages<'g> {
     kernels: &'g Kernels,
     frame: Frame,
     positions: wgpu::Buffer,
-    triangles: wgpu::Buffer,
     counts: wgpu::Buffer,
     polygons: wgpu::Buffer,
     /// Triangles of the current batch.
@@ -149,7 +147,6 @@ impl<'g> Stages<'g> {
             kernels,
             frame: Frame::new(scene.size, bits, Band::whole(scene.size)),
             positions: gpu.storage("positions", 16 * scene.vertices.len() as u64)?,
-            triangles: gpu.storage("triangles", 12 * room)?,
             counts: gpu.storage("counts", 4 * room)?,
             polygons: gpu.storage("polygons", SLOTS * room)?,
             items: 0,
@@ -191,13 +188,11 @@ impl<'g> Stages<'g> {
     /// Clips a batch; gives the number of corners of each triangle.
     fn clip(&mut self, triangles: &[Triangle]) -> Result<Vec<u32>, GpuError> {
         let corners: Vec<[u32; 3]> = triangles.iter().map(|t| t.vertices).collect();
-        self.gpu
-            .queue
-            .write_buffer(&self.triangles, 0, bytemuck::cast_slice(&corners));
+        let corners = self.gpu.upload("triangles", &corners)?;
         self.items = self.row("triangles", triangles.len())?;
         let buffers = [
             ("positions", &self.positions),
-            ("triangles", &self.triangles),
+            ("triangles", &corners),
             ("counts", &self.counts),
             ("polygons", &self.polygons),
         ];
@@ -239,7 +234,7 @@ impl<'g> Stages<'g> {
             items: items.end - items.start,
             ..self.frame
         };
-        let uniform = uniform(gpu, &frame);
+        let uniform = gpu.uniform("frame", &frame)?;
         let mut all = vec![("frame", &uniform)];
         all.extend_from_slice(buffers);
         let group = kernel.bind(gpu, &all);

@@ -1,10 +1,11 @@
-//! One attempt at one band: buffers, passes, results.
+//! One attempt at one band: passes and results.
 
 use std::time::Duration;
 
-use triptych_spec::abuffer::{EOL, Lists, NOTHING, Node};
+use triptych_spec::abuffer::{Lists, Node, Opaque};
 
-use super::{Given, Options, Times};
+use super::buffers::{Buffers, HEADER};
+use super::{BandResult, Options, Times};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
@@ -12,23 +13,6 @@ use crate::raster::{Rasterizer, per_pixel};
 
 /// Steps along a list within one dispatch. Twin: `STEPS` in `abuffer.wgsl`.
 pub const STEPS: u64 = 16_384;
-
-/// Bytes of a pixel's progress. Twin: `Progress` in `abuffer.wgsl`.
-pub const PROGRESS: u64 = 32;
-
-/// Bytes before the pixels' progress. Twin: `Work` in `abuffer.wgsl`.
-pub(super) const HEADER: u64 = 4;
-
-/// Buffers of a band.
-pub(super) struct Buffers {
-    counter: wgpu::Buffer,
-    pub(super) opaque_key: wgpu::Buffer,
-    pub(super) opaque_prim: wgpu::Buffer,
-    heads: wgpu::Buffer,
-    nodes: wgpu::Buffer,
-    colours: wgpu::Buffer,
-    picture: wgpu::Buffer,
-}
 
 /// One attempt at one band.
 pub(super) struct Run<'r, 'g> {
@@ -39,54 +23,84 @@ pub(super) struct Run<'r, 'g> {
     pub(super) times: Times,
 }
 
+/// What came of an attempt.
+pub(super) enum Tried {
+    /// Everything fitted.
+    Done(Box<Done>),
+    /// There was not enough room; this was stored.
+    Overflowed(Lists),
+}
+
+/// A band that is done.
+pub(super) struct Done {
+    pub(super) opaque: Opaque,
+    pub(super) band: BandResult,
+    /// Empty where the lists were not followed to their ends.
+    pub(super) image: Vec<[f32; 3]>,
+    pub(super) times: Times,
+    /// The lists were found damaged.
+    pub(super) damaged: bool,
+    /// The stage that followed a list without coming to its end.
+    pub(super) endless: Option<&'static str>,
+}
+
 impl Run<'_, '_> {
+    /// Runs every stage; `inspect` gives the length of the longest list, or `None` if
+    /// they must not be followed. With `follow` false they are not, anyway.
+    pub(super) fn attempt(
+        mut self,
+        is_opaque: &impl Fn(u32) -> bool,
+        inspect: impl FnOnce(&Lists) -> Option<u32>,
+        follow: bool,
+    ) -> Result<Tried, GpuError> {
+        let buffers = self.buffers()?;
+        self.fill(&buffers, is_opaque)?;
+        let built = self.lists(&buffers)?;
+        if built.attempts > self.capacity {
+            return Ok(Tried::Overflowed(built));
+        }
+        let opaque = Opaque {
+            key: self.read(&buffers.opaque_key)?,
+            prim: self.read(&buffers.opaque_prim)?,
+        };
+        let longest = inspect(&built);
+        let finished = match longest.filter(|_| follow) {
+            Some(longest) => self.finish(&buffers, longest).map(Some),
+            None => Ok(None),
+        };
+        let (finished, endless) = match finished {
+            Err(GpuError::Endless { stage, .. }) => (None, Some(stage)),
+            finished => (finished?, None),
+        };
+        let (sorted, image) = finished.unzip();
+        Ok(Tried::Done(Box::new(Done {
+            opaque,
+            image: image.unwrap_or_default(),
+            times: self.times,
+            damaged: longest.is_none(),
+            endless,
+            band: BandResult {
+                band: self.band,
+                built,
+                sorted,
+            },
+        })))
+    }
+
     fn gpu(&self) -> &Gpu {
         self.rasterizer.gpu
     }
 
-    pub(super) fn buffers(&self) -> Result<Buffers, GpuError> {
-        let gpu = self.gpu();
-        let pixels = self.band.pixels(self.rasterizer.size);
-        let picture = gpu.storage("picture", 16 * u64::from(pixels))?;
-        if let Some(given) = self.options.given {
-            return self.buffers_from(given, picture);
-        }
-        let capacity = if self.options.lists {
-            u64::from(self.capacity)
-        } else {
-            0
-        };
-        Ok(Buffers {
-            counter: gpu.filled("counter", 1, 0)?,
-            opaque_key: gpu.filled("opaque_key", pixels, NOTHING)?,
-            opaque_prim: gpu.filled("opaque_prim", pixels, NOTHING)?,
-            heads: gpu.filled("heads", pixels, EOL)?,
-            nodes: gpu.storage("nodes", 16 * capacity)?,
-            colours: gpu.storage("colours", 16 * capacity)?,
-            picture,
-        })
+    fn pixels(&self) -> u32 {
+        self.band.pixels(self.rasterizer.size)
     }
 
-    fn buffers_from(&self, given: Given<'_>, picture: wgpu::Buffer) -> Result<Buffers, GpuError> {
-        let gpu = self.gpu();
-        let width = self.rasterizer.size.width;
-        let first = (self.band.first * width) as usize;
-        let pixels = first..first + self.band.pixels(self.rasterizer.size) as usize;
-        let lists = given.lists;
-        let nodes: Vec<[u32; 4]> = lists
-            .nodes
-            .iter()
-            .map(|n| [n.key, n.next, n.prim, n.mask])
-            .collect();
-        Ok(Buffers {
-            counter: gpu.filled("counter", 1, lists.attempts)?,
-            opaque_key: gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?,
-            opaque_prim: gpu.upload("opaque_prim", &given.opaque.prim[pixels.clone()])?,
-            heads: gpu.upload("heads", &lists.heads[pixels])?,
-            nodes: gpu.upload("nodes", &nodes)?,
-            colours: gpu.upload("colours", &lists.colours)?,
-            picture,
-        })
+    fn buffers(&self) -> Result<Buffers, GpuError> {
+        let Some(given) = self.options.given else {
+            return Buffers::empty(self.gpu(), self.pixels(), self.capacity);
+        };
+        let first = (self.band.first * self.rasterizer.size.width) as usize;
+        Buffers::given(self.gpu(), given, first..first + self.pixels() as usize)
     }
 
     fn frame(&self) -> Frame {
@@ -120,11 +134,7 @@ impl Run<'_, '_> {
     }
 
     /// Runs the passes that fill the buffers, unless they hold another leg's results.
-    pub(super) fn fill(
-        &mut self,
-        b: &Buffers,
-        is_opaque: &impl Fn(u32) -> bool,
-    ) -> Result<(), GpuError> {
+    fn fill(&mut self, b: &Buffers, is_opaque: &impl Fn(u32) -> bool) -> Result<(), GpuError> {
         if self.options.given.is_some() {
             return Ok(());
         }
@@ -138,21 +148,17 @@ impl Run<'_, '_> {
     }
 
     /// Sorts and resolves lists of at most `longest` nodes; gives the sorted lists and
-    /// appends to the picture.
-    pub(super) fn finish(
-        &mut self,
-        b: &Buffers,
-        longest: u32,
-        image: &mut Vec<[f32; 3]>,
-    ) -> Result<Lists, GpuError> {
+    /// the picture.
+    fn finish(&mut self, b: &Buffers, longest: u32) -> Result<(Lists, Vec<[f32; 3]>), GpuError> {
         if self.options.lists && !self.options.given.is_some_and(|g| g.sorted) {
             self.times.sort = self.until_done("sort", longest, b)?;
         }
         self.times.resolve = self.until_done("resolve", longest, b)?;
-        let pixels = self.band.pixels(self.rasterizer.size) as usize;
-        let picture = self.gpu().read::<[f32; 4]>(&b.picture, pixels)?;
-        image.extend(picture.into_iter().map(|[r, g, b, _]| [r, g, b]));
-        self.lists(b)
+        let picture = self
+            .gpu()
+            .read::<[f32; 4]>(&b.picture, self.pixels() as usize)?;
+        let image = picture.into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
+        Ok((self.lists(b)?, image))
     }
 
     /// Dispatches a stage until no pixel asks for more. Merging a list of n nodes
@@ -165,16 +171,13 @@ impl Run<'_, '_> {
         b: &Buffers,
     ) -> Result<Duration, GpuError> {
         let gpu = self.gpu();
-        let pixels = u64::from(self.band.pixels(self.rasterizer.size));
-        let progress = gpu.storage("progress", HEADER + PROGRESS * pixels)?;
-        let mut buffers = b.named().to_vec();
-        buffers.push(("progress", &progress));
         let mut time = Duration::ZERO;
         let passes = u64::from(longest.max(1).ilog2()) + 1;
+        clear(gpu, &b.progress, None)?;
         for _ in 0..=4 * u64::from(longest) * passes / STEPS {
-            gpu.queue.write_buffer(&progress, 0, &[0; 4]);
-            time += per_pixel(self.rasterizer, "abuffer", stage, self.frame(), &buffers)?;
-            if gpu.read::<u32>(&progress, 1)?[0] == 0 {
+            clear(gpu, &b.progress, Some(HEADER))?;
+            time += per_pixel(self.rasterizer, "abuffer", stage, self.frame(), &b.named())?;
+            if gpu.read::<u32>(&b.progress, 1)?[0] == 0 {
                 return Ok(time);
             }
         }
@@ -184,7 +187,7 @@ impl Run<'_, '_> {
         })
     }
 
-    pub(super) fn lists(&self, b: &Buffers) -> Result<Lists, GpuError> {
+    fn lists(&self, b: &Buffers) -> Result<Lists, GpuError> {
         let gpu = self.gpu();
         let attempts = gpu.read::<u32>(&b.counter, 1)?[0];
         let stored = attempts.min(self.capacity) as usize;
@@ -208,22 +211,14 @@ impl Run<'_, '_> {
     }
 
     /// One word per pixel of the band.
-    pub(super) fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
-        self.gpu()
-            .read(buffer, self.band.pixels(self.rasterizer.size) as usize)
+    fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+        self.gpu().read(buffer, self.pixels() as usize)
     }
 }
 
-impl Buffers {
-    fn named(&self) -> [(&'static str, &wgpu::Buffer); 7] {
-        [
-            ("counter", &self.counter),
-            ("opaque_key", &self.opaque_key),
-            ("opaque_prim", &self.opaque_prim),
-            ("heads", &self.heads),
-            ("nodes", &self.nodes),
-            ("colours", &self.colours),
-            ("picture", &self.picture),
-        ]
-    }
+/// Sets a buffer, or its beginning, to zero.
+fn clear(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: Option<u64>) -> Result<(), GpuError> {
+    let mut encoder = gpu.encoder();
+    encoder.clear_buffer(buffer, 0, bytes);
+    gpu.submit(encoder)
 }

@@ -81,6 +81,12 @@ impl Run<'_> {
                 self.rows.skip(stage, "spec", label, Class::Exact, reason);
                 return;
             }
+            // What a device has left is no number of the scene's.
+            GpuError::Memory { .. } => {
+                let reason = error.to_string();
+                self.rows.skip(stage, "spec", label, Class::Exact, reason);
+                return;
+            }
             GpuError::Limit { what: CLIPPED, .. } => Some(Cause::Vertex),
             GpuError::Limit { .. } => Some(Cause::Overflow),
             GpuError::Lost { .. } => Some(Cause::DeviceLost),

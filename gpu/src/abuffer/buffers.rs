@@ -1,0 +1,136 @@
+//! The buffers of one attempt at one band.
+
+use std::ops::Range;
+
+use triptych_spec::abuffer::{EOL, Lists, NOTHING};
+
+use super::Given;
+use crate::context::Gpu;
+use crate::error::GpuError;
+use crate::raster::Need;
+
+/// Bytes of a pixel's progress. Twin: `Progress` in `abuffer.wgsl`.
+pub const PROGRESS: u64 = 32;
+
+/// Bytes before the pixels' progress. Twin: `Work` in `abuffer.wgsl`.
+pub(super) const HEADER: u64 = 4;
+
+/// Pixels that a dispatch of one workgroup row can serve.
+const PIXELS_MAX: u64 = 65_535 * crate::frame::WORKGROUP as u64;
+
+/// Heads, opaque surfaces, picture and progress of a pixel; a node and its colour.
+pub(super) fn need(gpu: &Gpu) -> Need {
+    let bindable = gpu.binding_limit().saturating_sub(HEADER) / PROGRESS;
+    Need {
+        what: "build",
+        pixel: 3 * 4 + 16 + PROGRESS,
+        node: 16 + 16,
+        pixels_max: PIXELS_MAX.min(bindable),
+    }
+}
+
+/// Buffers of a band.
+pub(super) struct Buffers {
+    pub(super) counter: wgpu::Buffer,
+    pub(super) opaque_key: wgpu::Buffer,
+    pub(super) opaque_prim: wgpu::Buffer,
+    pub(super) heads: wgpu::Buffer,
+    pub(super) nodes: wgpu::Buffer,
+    pub(super) colours: wgpu::Buffer,
+    pub(super) picture: wgpu::Buffer,
+    pub(super) progress: wgpu::Buffer,
+}
+
+impl Buffers {
+    /// Empty lists, with room for so many nodes.
+    pub(super) fn empty(gpu: &Gpu, pixels: u32, capacity: u32) -> Result<Self, GpuError> {
+        let nodes = 16 * u64::from(capacity);
+        Ok(Self {
+            counter: gpu.filled("counter", 1, 0)?,
+            opaque_key: gpu.filled("opaque_key", pixels, NOTHING)?,
+            opaque_prim: gpu.filled("opaque_prim", pixels, NOTHING)?,
+            heads: gpu.filled("heads", pixels, EOL)?,
+            nodes: gpu.storage("nodes", nodes)?,
+            colours: gpu.storage("colours", nodes)?,
+            picture: gpu.storage("picture", 16 * u64::from(pixels))?,
+            progress: gpu.storage("progress", HEADER + PROGRESS * u64::from(pixels))?,
+        })
+    }
+
+    /// The lists and surfaces that are given for these pixels.
+    pub(super) fn given(
+        gpu: &Gpu,
+        given: Given<'_>,
+        pixels: Range<usize>,
+    ) -> Result<Self, GpuError> {
+        let part = Part::of(given.lists, pixels.clone());
+        let count = pixels.len() as u64;
+        Ok(Self {
+            counter: gpu.upload("counter", &[word(part.nodes.len())])?,
+            opaque_key: gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?,
+            opaque_prim: gpu.upload("opaque_prim", &given.opaque.prim[pixels])?,
+            heads: gpu.upload("heads", &part.heads)?,
+            nodes: gpu.upload("nodes", &part.nodes)?,
+            colours: gpu.upload("colours", &part.colours)?,
+            picture: gpu.storage("picture", 16 * count)?,
+            progress: gpu.storage("progress", HEADER + PROGRESS * count)?,
+        })
+    }
+
+    pub(super) fn named(&self) -> [(&'static str, &wgpu::Buffer); 8] {
+        [
+            ("counter", &self.counter),
+            ("opaque_key", &self.opaque_key),
+            ("opaque_prim", &self.opaque_prim),
+            ("heads", &self.heads),
+            ("nodes", &self.nodes),
+            ("colours", &self.colours),
+            ("picture", &self.picture),
+            ("progress", &self.progress),
+        ]
+    }
+}
+
+/// Lists as the kernels have them.
+struct Part {
+    heads: Vec<u32>,
+    nodes: Vec<[u32; 4]>,
+    colours: Vec<[f32; 4]>,
+}
+
+impl Part {
+    /// The lists of some pixels alone: their nodes keep their order, and move up.
+    fn of(lists: &Lists, pixels: Range<usize>) -> Self {
+        let heads = &lists.heads[pixels];
+        let mut kept: Vec<u32> = heads.iter().flat_map(|h| follow(lists, *h)).collect();
+        kept.sort_unstable();
+        kept.dedup();
+        let moved = |at: u32| kept.binary_search(&at).map_or(EOL, word);
+        let node = |&at: &u32| {
+            let node = lists.nodes[at as usize];
+            [node.key, moved(node.next), node.prim, node.mask]
+        };
+        Self {
+            heads: heads.iter().map(|h| moved(*h)).collect(),
+            nodes: kept.iter().map(node).collect(),
+            colours: kept.iter().map(|&at| lists.colours[at as usize]).collect(),
+        }
+    }
+}
+
+/// Nodes of the lists of each row of `width` pixels.
+pub(super) fn nodes_of_rows(lists: &Lists, width: u32) -> impl Iterator<Item = u32> {
+    let rows = lists.heads.chunks(width as usize);
+    rows.map(|heads| word(heads.iter().map(|head| follow(lists, *head).count()).sum()))
+}
+
+/// The addresses of a list's nodes; one that does not end is left sometime.
+fn follow(lists: &Lists, head: u32) -> impl Iterator<Item = u32> {
+    let inside = |at: u32| ((at as usize) < lists.nodes.len()).then_some(at);
+    let next = move |at: &u32| inside(lists.nodes[*at as usize].next);
+    std::iter::successors(inside(head), next).take(lists.nodes.len())
+}
+
+fn word(n: usize) -> u32 {
+    u32::try_from(n).expect("addresses are words")
+}
