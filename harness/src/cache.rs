@@ -18,6 +18,7 @@ use sha2::{Digest, Sha256};
 
 use crate::report::Picture;
 use crate::row::{Row, Verdict};
+use crate::text::hex;
 use code::Code;
 pub use code::Uses;
 
@@ -142,10 +143,6 @@ fn prune(dir: &Path) -> io::Result<()> {
         }
     }
     Ok(())
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ use triptych_spec::scene::Scene;
 use crate::corpus::{self, Entry};
 use crate::error::InputError;
 use crate::mesh::Intake;
+use crate::text::hex;
 use file::SceneFile;
 
 /// Largest scene.toml in bytes. Parsing takes up to a hundred times as much memory.
@@ -137,7 +138,7 @@ pub fn load_from(
     let meshes = source::load_all(intake, &parsed, &mut digest)?;
     let scene = flatten::flatten(&parsed, &meshes)?;
     let mut stats = source::stats(&meshes);
-    stats.sha256 = source::hex(&digest.finalize());
+    stats.sha256 = hex(&digest.finalize());
     Ok(Loaded {
         name: entry.name.clone(),
         bare: corpus::is_mesh(path),

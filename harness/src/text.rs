@@ -78,6 +78,11 @@ fn three_digits(value: f64) -> String {
     }
 }
 
+/// Bytes as lower-case hexadecimal digits.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
 /// Untrusted text on one line: control characters (escape codes, line breaks) and
 /// characters that change the direction of writing become U+FFFD.
 pub fn clean(text: &str) -> Cow<'_, str> {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use super::hex;
+use crate::text::hex;
 
 /// What a piece of work runs on beside this binary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,6 +10,7 @@ use super::{LoadError, MeshStats, Parsed, Stats};
 use crate::corpus;
 use crate::error::InputError;
 use crate::mesh::{self, Intake, MATERIALS_MAX, Mesh, TRIANGLES_MAX, VERTICES_MAX};
+use crate::text::hex;
 
 /// What installs the meshes of packages.
 const INSTALL: &str = "./x setup";
@@ -245,9 +246,4 @@ pub(super) fn stats(meshes: &[Source]) -> Stats {
         meshes: meshes.iter().map(|m| m.stats.clone()).collect(),
         sha256: String::new(),
     }
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
