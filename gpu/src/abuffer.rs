@@ -9,6 +9,7 @@ use triptych_spec::abuffer::{Lists, Opaque};
 
 use crate::error::GpuError;
 use crate::frame::Band;
+use crate::pass::Pass;
 use crate::raster::{Attempts, Rasterizer};
 pub use attempt::STEPS;
 use attempt::{Done, Run, Tried};
@@ -69,6 +70,8 @@ pub struct Abuffer {
     pub damaged: bool,
     /// The stage that followed a list without coming to its end.
     pub endless: Option<&'static str>,
+    /// What was recorded.
+    pub passes: Vec<Pass>,
 }
 
 /// Device time per stage.
@@ -97,6 +100,7 @@ pub fn run(
     mut inspect: impl FnMut(Band, &Lists) -> Option<u32>,
 ) -> Result<Abuffer, GpuError> {
     let mut result = Abuffer::default();
+    rasterizer.take_passes();
     let mut attempts = attempts(rasterizer, options);
     while let Some((band, capacity)) = attempts.next() {
         let run = Run {
@@ -116,6 +120,7 @@ pub fn run(
             Err(error) => attempts.failed(band, capacity, error)?,
         }
     }
+    result.passes = rasterizer.take_passes();
     Ok(result)
 }
 

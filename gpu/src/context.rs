@@ -76,16 +76,12 @@ impl Gpu {
             })?;
         let failure = Arc::new(Mutex::new(None));
         watch(&device, &name, &failure);
-        let limits = device.limits();
-        let binding_limit = limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size);
         Ok(Self {
             name,
             info,
+            binding_limit: binding_limit(&device),
             device,
             queue,
-            binding_limit,
             memory_limit: None,
             failure,
         })
@@ -106,6 +102,12 @@ impl Gpu {
     /// Behaves like an adapter that can bind no more than so many bytes.
     pub fn restrict_bindings(&mut self, bytes: u64) {
         self.binding_limit = self.binding_limit.min(bytes);
+    }
+
+    /// Behaves like the adapter that it is, again.
+    pub fn lift_restrictions(&mut self) {
+        self.binding_limit = binding_limit(&self.device);
+        self.memory_limit = None;
     }
 
     /// Runs what was recorded and waits for it.
@@ -153,6 +155,13 @@ impl Gpu {
             reason: one_line(error),
         })
     }
+}
+
+fn binding_limit(device: &wgpu::Device) -> u64 {
+    let limits = device.limits();
+    limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size)
 }
 
 /// Keeps the first error for [`Gpu::check`], or the loss of the device, which is why

@@ -1,11 +1,12 @@
 //! Pipelines by the name of their entry point, bound by the names of variables.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::context::Gpu;
 use crate::error::GpuError;
-use crate::wgsl::{Program, Sources};
+use crate::pass::Uses;
+use crate::wgsl::{Program, Sources, WgslError};
 
 /// A pipeline and the variables that it uses.
 pub struct Kernel {
@@ -13,6 +14,8 @@ pub struct Kernel {
     pub pipeline: Pipeline,
     /// Variable name and binding number, both stages of a render pipeline together.
     bindings: Vec<(String, u32)>,
+    /// What it does to plain data.
+    pub uses: Arc<Uses>,
 }
 
 /// The two kinds of pipeline.
@@ -27,10 +30,24 @@ pub enum Pipeline {
 /// it: llvmpipe drops side effects of fragments that a later opaque write covers.
 pub const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
+/// A defect on purpose of what the host does around its kernels. Only the harness's
+/// tests of itself have any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Heads are what their memory held, which WebGPU makes zeros.
+    HeadsNotCleared,
+    /// The counter starts where another frame left it.
+    CounterNotCleared,
+}
+
+/// A compiled file.
+type Module = Arc<(Program, wgpu::ShaderModule)>;
+
 /// The kernels of one device, compiled when first asked for.
 pub struct Kernels {
     sources: Sources,
-    programs: Mutex<BTreeMap<String, Arc<(Program, wgpu::ShaderModule)>>>,
+    fault: Option<Fault>,
+    programs: Mutex<BTreeMap<String, Module>>,
     kernels: Mutex<BTreeMap<(String, String), Arc<Kernel>>>,
 }
 
@@ -39,9 +56,46 @@ impl Kernels {
     pub fn new(sources: Sources) -> Self {
         Self {
             sources,
+            fault: None,
             programs: Mutex::default(),
             kernels: Mutex::default(),
         }
+    }
+
+    /// The same with a defect in the sources or in the host's part. What links to the
+    /// same text as here, and is compiled here, is not compiled again.
+    ///
+    /// # Errors
+    /// Sources that do not link.
+    pub fn mutated(&self, sources: Sources, fault: Option<Fault>) -> Result<Self, WgslError> {
+        let mut programs = self.programs().clone();
+        let mut same = BTreeMap::new();
+        for (file, program) in &programs {
+            let text = sources.link(file)?.text;
+            same.insert(file.clone(), text == program.0.linked.text);
+        }
+        programs.retain(|file, _| same[file]);
+        let mut kernels = self.kernels().clone();
+        kernels.retain(|(file, _), _| same[file]);
+        Ok(Self {
+            sources,
+            fault,
+            programs: Mutex::new(programs),
+            kernels: Mutex::new(kernels),
+        })
+    }
+
+    /// What the host does wrong on purpose.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    fn programs(&self) -> MutexGuard<'_, BTreeMap<String, Module>> {
+        self.programs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn kernels(&self) -> MutexGuard<'_, BTreeMap<(String, String), Arc<Kernel>>> {
+        self.kernels.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The compute kernel `entry` of `file`.
@@ -63,6 +117,7 @@ impl Kernels {
             Ok(Kernel {
                 pipeline: Pipeline::Compute(pipeline),
                 bindings: bindings(program, &[entry]),
+                uses: Arc::new(Uses::of(program, &[entry])),
             })
         })
     }
@@ -104,6 +159,7 @@ impl Kernels {
             Ok(Kernel {
                 pipeline: Pipeline::Render(pipeline),
                 bindings: bindings(program, &["place", entry]),
+                uses: Arc::new(Uses::of(program, &["place", entry])),
             })
         })
     }
@@ -115,7 +171,7 @@ impl Kernels {
         entry: &str,
         make: impl FnOnce(&Program, &wgpu::ShaderModule) -> Result<Kernel, GpuError>,
     ) -> Result<Arc<Kernel>, GpuError> {
-        let mut kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kernels = self.kernels();
         let key = (file.to_owned(), entry.to_owned());
         if let Some(kernel) = kernels.get(&key) {
             return Ok(kernel.clone());
@@ -127,12 +183,8 @@ impl Kernels {
         Ok(kernel)
     }
 
-    fn program(
-        &self,
-        gpu: &Gpu,
-        file: &str,
-    ) -> Result<Arc<(Program, wgpu::ShaderModule)>, GpuError> {
-        let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
+    fn program(&self, gpu: &Gpu, file: &str) -> Result<Module, GpuError> {
+        let mut programs = self.programs();
         if let Some(program) = programs.get(file) {
             return Ok(program.clone());
         }

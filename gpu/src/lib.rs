@@ -10,6 +10,7 @@ pub mod context;
 pub mod error;
 pub mod frame;
 pub mod kernel;
+pub mod pass;
 pub mod raster;
 pub mod vertex;
 pub mod wgsl;

@@ -4,6 +4,7 @@ mod attempts;
 mod cover;
 mod work;
 
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use triptych_spec::scene::Size;
@@ -13,6 +14,7 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::kernel::{Kernel, Kernels, Pipeline, TARGET_FORMAT};
+use crate::pass::Pass;
 pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub use work::Work;
@@ -57,6 +59,7 @@ pub struct Rasterizer<'g> {
     /// First and last row with a sample, of each triangle that has any.
     rows: Vec<Option<[i64; 2]>>,
     target: wgpu::TextureView,
+    passes: RefCell<Vec<Pass>>,
 }
 
 impl<'g> Rasterizer<'g> {
@@ -88,6 +91,7 @@ impl<'g> Rasterizer<'g> {
             corners: gpu.upload("corners", &corners)?,
             faces: gpu.upload("faces", faces)?,
             target: target(gpu, primitives.size)?,
+            passes: RefCell::default(),
         })
     }
 
@@ -128,10 +132,24 @@ impl<'g> Rasterizer<'g> {
             all.extend_from_slice(buffers);
             let group = kernel.bind(self.gpu, &all);
             self.record(&mut encoder, &kernel, &group, &frame);
+            self.note(stage, true, &kernel);
         }
         let start = Instant::now();
         self.gpu.submit(encoder)?;
         Ok(start.elapsed())
+    }
+
+    /// The passes since the last call, in the order in which they were recorded.
+    pub fn take_passes(&self) -> Vec<Pass> {
+        self.passes.take()
+    }
+
+    fn note(&self, stage: &str, shared: bool, kernel: &Kernel) {
+        self.passes.borrow_mut().push(Pass {
+            stage: stage.into(),
+            shared,
+            uses: kernel.uses.clone(),
+        });
     }
 
     /// A frame for a band of this target.
@@ -196,6 +214,7 @@ pub fn per_pixel(
         // in a row; bands of the full size are split before that.
         pass.dispatch_workgroups((frame.width * frame.rows).div_ceil(WORKGROUP), 1, 1);
     }
+    rasterizer.note(stage, false, &kernel);
     let start = Instant::now();
     gpu.submit(encoder)?;
     Ok(start.elapsed())

@@ -96,6 +96,11 @@ impl Sources {
         Ok(Self(files))
     }
 
+    /// The texts by name.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0.iter().map(|(name, text)| (*name, text.as_ref()))
+    }
+
     /// Links `root` with everything that it imports.
     ///
     /// # Errors

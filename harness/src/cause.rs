@@ -32,7 +32,8 @@ pub enum Cause {
     BlendRounding,
     /// The fragment is right, its sample mask is not.
     SampleMask,
-    /// Something of an earlier pass or frame shows through.
+    /// Something of an earlier pass or frame shows through, or a pass reads what it
+    /// writes itself.
     StalePass,
     /// Closer to an edge than the reference's own precision; counted, not judged.
     Edge,

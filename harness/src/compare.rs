@@ -7,6 +7,7 @@ pub mod image;
 pub mod lists;
 pub mod opaque;
 pub mod order;
+pub mod passes;
 pub mod vertex;
 
 use std::collections::BTreeMap;

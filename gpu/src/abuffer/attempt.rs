@@ -97,7 +97,8 @@ impl Run<'_, '_> {
 
     fn buffers(&self) -> Result<Buffers, GpuError> {
         let Some(given) = self.options.given else {
-            return Buffers::empty(self.gpu(), self.pixels(), self.capacity);
+            let fault = self.rasterizer.kernels.fault();
+            return Buffers::empty(self.gpu(), self.pixels(), self.capacity, fault);
         };
         let first = (self.band.first * self.rasterizer.size.width) as usize;
         Buffers::given(self.gpu(), given, first..first + self.pixels() as usize)

@@ -7,6 +7,7 @@ use triptych_spec::abuffer::{EOL, Lists, NOTHING};
 use super::Given;
 use crate::context::Gpu;
 use crate::error::GpuError;
+use crate::kernel::Fault;
 use crate::raster::Need;
 
 /// Bytes of a pixel's progress. Twin: `Progress` in `abuffer.wgsl`.
@@ -43,13 +44,26 @@ pub(super) struct Buffers {
 
 impl Buffers {
     /// Empty lists, with room for so many nodes.
-    pub(super) fn empty(gpu: &Gpu, pixels: u32, capacity: u32) -> Result<Self, GpuError> {
+    pub(super) fn empty(
+        gpu: &Gpu,
+        pixels: u32,
+        capacity: u32,
+        fault: Option<Fault>,
+    ) -> Result<Self, GpuError> {
         let nodes = 16 * u64::from(capacity);
+        let head = match fault {
+            Some(Fault::HeadsNotCleared) => 0,
+            _ => EOL,
+        };
+        let counted = match fault {
+            Some(Fault::CounterNotCleared) => 64,
+            _ => 0,
+        };
         Ok(Self {
-            counter: gpu.filled("counter", 1, 0)?,
+            counter: gpu.filled("counter", 1, counted)?,
             opaque_key: gpu.filled("opaque_key", pixels, NOTHING)?,
             opaque_prim: gpu.filled("opaque_prim", pixels, NOTHING)?,
-            heads: gpu.filled("heads", pixels, EOL)?,
+            heads: gpu.filled("heads", pixels, head)?,
             nodes: gpu.storage("nodes", nodes)?,
             colours: gpu.storage("colours", nodes)?,
             picture: gpu.storage("picture", 16 * u64::from(pixels))?,

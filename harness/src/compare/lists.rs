@@ -23,7 +23,7 @@
 //! Last, over all pixels: nodes that no list leads to and no list lacks are
 //! `overflow` if nothing was ever stored in them, for then the counter counted too
 //! much, else `lost-node`; a counter that is not explained by the above is
-//! `overflow`.
+//! `overflow`. What the passes did is judged beside the lists: see `passes.rs`.
 
 mod certificate;
 mod membership;

@@ -142,7 +142,10 @@ fn cause_meaning(cause: Cause) -> &'static str {
         Cause::Interval => "A value lies outside its bound.",
         Cause::BlendRounding => "A colour lies outside its bound although its list is right.",
         Cause::SampleMask => "The fragment is right, its sample mask is not.",
-        Cause::StalePass => "Something of an earlier pass or frame shows through.",
+        Cause::StalePass => {
+            "Something of an earlier pass or frame shows through, or a pass reads what it writes \
+             itself."
+        }
         Cause::Edge => "Closer to an edge than the reference's own precision; not judged.",
         Cause::ReferenceMissing => "There was nothing to compare with.",
         Cause::DeviceLost => "The device went away.",

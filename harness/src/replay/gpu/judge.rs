@@ -68,7 +68,9 @@ impl GpuLeg<'_> {
             let judge = |b: &abuffer::BandResult| {
                 compare::lists::compare(&self.expected(spec, b.band), &b.built)
             };
-            Judgement::sum(gpu.bands.iter().map(judge))
+            let mut all = Judgement::sum(gpu.bands.iter().map(judge));
+            compare::passes::judge(&gpu.passes, &mut all);
+            all
         });
         rows.add("build", &spec, &gpu, judgement);
     }
