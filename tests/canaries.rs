@@ -1,183 +1,141 @@
-//! The harness tests itself: one deliberately broken kernel (or leg) per typed cause,
-//! which must be reported as exactly that cause, on every adapter, on a scene on
-//! which the shipped kernels agree.
+//! The harness tests itself: broken kernels, which some leg must kill, and one canary
+//! for each typed cause, which every leg must report as exactly that cause. Each runs on
+//! a scene on which the shipped kernels agree.
 
-mod devices;
 #[path = "canaries/leg.rs"]
 mod leg;
-#[path = "canaries/table.rs"]
-mod table;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
-use devices::Devices;
 use libtest_mimic::{Arguments, Failed, Trial};
-use table::Canary;
-use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
 use triptych_harness::cause::Cause;
-use triptych_harness::corpus::{self, Entry};
+use triptych_harness::corpus;
+use triptych_harness::mutants::{Cell, Columns, Lab, Mutant, by_mutant, legs, mutants};
 use triptych_harness::replay::gpu::Adapter;
-use triptych_harness::replay::{Options, Outcome, replay};
-use triptych_harness::row::{Row, Verdict};
+use triptych_harness::replay::{Options, replay};
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let cage = Arc::new(Cage::default());
     let mut trials = Vec::new();
-    for canary in table::canaries() {
+    for mutant in mutants() {
         let cage = cage.clone();
-        let name = format!("{}/{}", canary.cause.name(), canary.name);
-        trials.push(Trial::test(name, move || cage.sing(&canary)));
+        let cause = mutant.cause.map_or_else(|| "mutant".into(), Cause::name);
+        let name = format!("{cause}/{}", mutant.name);
+        trials.push(Trial::test(name, move || cage.kill(&mutant)));
     }
-    let lost = cage.clone();
-    trials.push(Trial::test("device-lost/destroyed", move || {
-        lost.lose_device()
-    }));
+    trials.push(Trial::test("device-lost/destroyed", lose_device));
     trials.extend(leg::trials());
     trials.push(Trial::test("every-cause-has-a-canary", every_cause));
-    libtest_mimic::run(&arguments, trials).exit_code()
+    let conclusion = libtest_mimic::run(&arguments, trials);
+    cage.print();
+    conclusion.exit_code()
 }
 
-/// Devices, and the scenes on which the shipped kernels are known to agree.
+/// The devices, opened when first asked for, and what came of the mutants so far.
 #[derive(Default)]
 struct Cage {
-    devices: Devices,
-    sound: Mutex<BTreeSet<String>>,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    lab: Option<Lab>,
+    cells: Vec<Cell>,
+    time: Duration,
 }
 
 impl Cage {
-    fn sing(&self, canary: &Canary) -> Result<(), Failed> {
-        let mut adapters = self.devices.take()?;
-        // One check a scene; a canary that waits for it would check it as well.
-        let mut sound = self.sound.lock().unwrap_or_else(PoisonError::into_inner);
-        let entry = canary.entry();
-        if !sound.contains(&entry.name) {
-            shipped_kernels_agree(&entry, &adapters)?;
-            sound.insert(entry.name.clone());
-        }
-        drop(sound);
-        let patched = canary.sources()?;
-        let shipped = swap(&mut adapters, || Kernels::new(patched.clone()));
-        let outcome = run(&entry, &adapters);
-        for (adapter, kernels) in adapters.iter_mut().zip(shipped) {
-            adapter.kernels = kernels;
-        }
-        let outcome = outcome?;
-        let wrong: Vec<String> = adapters
-            .iter()
-            .filter_map(|a| exactly(canary.cause, &rows_of(&outcome, a)).err())
-            .collect();
-        if wrong.is_empty() {
-            return Ok(());
-        }
-        adapters.spoil();
-        Err(format!("{}\n{}", wrong.join("\n"), outcome.described.join("\n")).into())
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A device that goes away: every leg on it fails, and says why.
-    fn lose_device(&self) -> Result<(), Failed> {
-        let mut adapters = self.devices.take()?;
-        adapters.spoil();
-        for adapter in adapters.iter() {
-            adapter.gpu.device.destroy();
+    fn kill(&self, mutant: &Mutant) -> Result<(), Failed> {
+        let mut state = self.state();
+        let start = Instant::now();
+        // Devices that failed are not asked again.
+        let mut lab = match state.lab.take() {
+            Some(lab) => lab,
+            None => open()?,
+        };
+        let cells = lab.run(mutant)?;
+        state.lab = Some(lab);
+        state.time += start.elapsed();
+        state.cells.extend(cells.clone());
+        Ok(mutant.judge(&cells)?)
+    }
+
+    /// The kill matrix.
+    fn print(&self) {
+        let State { cells, time, .. } = &*self.state();
+        if cells.is_empty() {
+            return;
         }
-        let quads = corpus::list(&corpus::root())?;
-        let quads = quads
-            .iter()
-            .find(|e| e.name == "abuffer/quads")
-            .ok_or("no abuffer/quads")?;
-        let outcome = run(quads, &adapters)?;
-        for adapter in adapters.iter() {
-            exactly(Cause::DeviceLost, &rows_of(&outcome, adapter))?;
+        let order: BTreeMap<String, usize> =
+            mutants().into_iter().map(|m| m.name).zip(0..).collect();
+        let mut rows: Vec<_> = by_mutant(cells);
+        rows.sort_by_key(|(name, _)| order[*name]);
+        let names = cells.iter().map(|c| (c.mutant.as_str(), c.scene.as_str()));
+        let legs: Vec<String> = legs(cells).into_iter().map(str::to_owned).collect();
+        let columns = Columns::new(&legs, names);
+        for line in columns.header() {
+            println!("{line}");
         }
-        Ok(())
+        for (_, cells) in &rows {
+            println!("{}", columns.line(cells));
+        }
+        println!("{} mutants in {:.1} s\n", rows.len(), time.as_secs_f64());
     }
 }
 
-/// Gives every adapter other kernels; returns those that it had.
-fn swap(adapters: &mut [Adapter], new: impl Fn() -> Kernels) -> Vec<Kernels> {
-    let kernels = adapters.iter_mut().map(|a| &mut a.kernels);
-    kernels.map(|old| std::mem::replace(old, new())).collect()
+fn open() -> Result<Lab, Failed> {
+    let adapters = Adapter::open_all(&[]).map_err(|e| e.to_string())?;
+    if adapters.is_empty() {
+        return Err(
+            "no GPU adapter: `./x setup` installs two software drivers, \
+                    `./x doctor` says what is missing"
+                .into(),
+        );
+    }
+    Ok(Lab::new(adapters))
 }
 
-/// Replays a scene on the compute path of every adapter.
-fn run(entry: &Entry, adapters: &[Adapter]) -> Result<Outcome, Failed> {
+/// A device that goes away: every leg on it fails, and says why.
+fn lose_device() -> Result<(), Failed> {
+    let adapters = Adapter::open_all(&[]).map_err(|e| e.to_string())?;
+    for adapter in &adapters {
+        adapter.gpu.device.destroy();
+    }
+    let entries = corpus::list(&corpus::root())?;
+    let quads = entries.iter().find(|e| e.name == "abuffer/quads");
     let options = Options {
         embree: false,
         paths: vec![Path::Compute],
         ..Options::default()
     };
-    Ok(replay(entry, adapters, &options)?)
-}
-
-/// Without this, a canary could die of something else.
-fn shipped_kernels_agree(entry: &Entry, adapters: &[Adapter]) -> Result<(), Failed> {
-    let outcome = run(entry, adapters)?;
-    for adapter in adapters.iter() {
-        let rows = rows_of(&outcome, adapter);
-        let agree = rows.iter().any(|r| r.verdict() == Verdict::Agree);
-        let diverge = rows.iter().any(|r| r.verdict() == Verdict::Diverge);
-        if diverge || !agree {
-            return Err(format!(
-                "{}: the shipped kernels do not agree on {}",
-                adapter.gpu.name, entry.name
-            )
-            .into());
+    let outcome = replay(quads.ok_or("no abuffer/quads")?, &adapters, &options)?;
+    for adapter in &adapters {
+        let label = format!("gpu@{}/", adapter.gpu.name);
+        let rows = outcome.rows.iter().filter(|r| r.b.starts_with(&label));
+        let rows: Vec<_> = rows.filter(|r| r.differ > 0).collect();
+        let lost = rows
+            .iter()
+            .all(|r| r.causes.keys().eq([&Cause::DeviceLost]));
+        if rows.is_empty() || !lost || rows.iter().any(|r| r.unexplained > 0) {
+            return Err(format!("not exactly device-lost: {rows:#?}").into());
         }
     }
     Ok(())
 }
 
-fn rows_of<'o>(outcome: &'o Outcome, adapter: &Adapter) -> Vec<&'o Row> {
-    let label = format!("gpu@{}/", adapter.gpu.name);
-    outcome
-        .rows
-        .iter()
-        .filter(|r| r.b.starts_with(&label))
-        .collect()
-}
-
-/// Whether rows diverge for one cause and nothing else.
-fn exactly(cause: Cause, rows: &[&Row]) -> Result<(), String> {
-    let mut causes: BTreeMap<Cause, u64> = BTreeMap::new();
-    let mut unexplained = 0;
-    for row in rows.iter().filter(|r| r.verdict() == Verdict::Diverge) {
-        unexplained += row.unexplained;
-        for (cause, count) in &row.causes {
-            *causes.entry(*cause).or_default() += count;
-        }
-    }
-    if unexplained == 0 && causes.keys().eq([&cause]) {
-        return Ok(());
-    }
-    let table: Vec<String> = rows
-        .iter()
-        .map(|r| {
-            format!(
-                "  {} of {}: {:?}, {:?}, {} unexplained, {}",
-                r.stage,
-                r.b,
-                r.verdict(),
-                r.causes,
-                r.unexplained,
-                r.note
-            )
-        })
-        .collect();
-    let name = cause.name();
-    Err(format!(
-        "not exactly {name}: {causes:?}, {unexplained} unexplained\n{}",
-        table.join("\n")
-    ))
-}
-
 /// Each cause that a comparer can give has a canary. `edge` is no difference: what
 /// is in that class is counted, not judged.
 fn every_cause() -> Result<(), Failed> {
-    let mut sung: BTreeSet<Cause> = table::canaries().iter().map(|c| c.cause).collect();
+    let mut sung: BTreeSet<Cause> = mutants().iter().filter_map(|m| m.cause).collect();
     sung.extend(leg::CAUSES);
     sung.extend([Cause::DeviceLost, Cause::Edge]);
     let silent: Vec<String> = Cause::ALL

@@ -3,6 +3,7 @@
 
 mod doctor;
 mod list;
+mod mutants;
 mod plan;
 mod replay;
 mod report;
@@ -47,6 +48,8 @@ enum Command {
     Doctor,
     /// The scenes of the corpus
     List(list::Args),
+    /// Run kernels with a defect each, which the scenes must bring to light
+    Mutants(mutants::Args),
     /// What a scene needs, and what it skips
     Plan(plan::Args),
     /// Replay scenes through all legs and compare them
@@ -60,6 +63,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Doctor => doctor::run(),
         Command::List(args) => list::run(&args),
+        Command::Mutants(args) => mutants::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Report(args) => report::run(&args),

@@ -1,7 +1,8 @@
 //! Results as JSON lines: one [`Row`] per line, and a [`Summary`] to end with.
 //!
 //! Each line is an object whose `type` is `row` or `summary`; the other fields are
-//! those of [`Row`] and [`Summary`]. A reader tolerates fields that it does not
+//! those of [`Row`] and [`Summary`]. A run of mutants has `mutant` and `mutants`, with
+//! the fields of [`Cell`] and [`Matrix`]. A reader tolerates fields that it does not
 //! know and names those that it misses. A summary must agree with the rows since
 //! the summary before it, so that neither a run that was cut off nor a file that
 //! lost lines merges into something that looks complete; whole files may be
@@ -14,6 +15,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::error::InputError;
+use crate::mutants::{Cell, Matrix};
 use crate::row::{Row, Summary};
 
 /// Longest line that is read, in bytes; a row is below 2 KiB.
@@ -24,6 +26,8 @@ pub const LINE_MAX: usize = 1 << 20;
 enum LineOut<'a> {
     Row(&'a Row),
     Summary(&'a Summary),
+    Mutant(&'a Cell),
+    Mutants(&'a Matrix),
 }
 
 #[derive(Deserialize)]
@@ -31,6 +35,8 @@ enum LineOut<'a> {
 enum LineIn {
     Row(Box<Row>),
     Summary(Summary),
+    Mutant(Box<Cell>),
+    Mutants(Matrix),
 }
 
 /// Writes rows as they come.
@@ -83,6 +89,25 @@ impl<W: Write> Writer<W> {
     }
 }
 
+/// A run of mutants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MutantRun {
+    /// What it came to.
+    pub matrix: Matrix,
+    /// Each mutant on each leg.
+    pub cells: Vec<Cell>,
+}
+
+/// Writes a run of mutants to a new file; its folder is made if absent.
+pub fn write_mutants(path: &Path, run: &MutantRun) -> io::Result<()> {
+    let mut writer = Writer::create(path)?;
+    for cell in &run.cells {
+        writer.line(&LineOut::Mutant(cell))?;
+    }
+    writer.line(&LineOut::Mutants(&run.matrix))?;
+    writer.out.flush()
+}
+
 /// The rows of several runs, in the order of the files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
@@ -91,26 +116,69 @@ pub struct Merged {
     /// Recomputed from the rows; `seconds` is the sum over the runs, which may
     /// have run side by side.
     pub summary: Summary,
+    /// Runs of mutants.
+    pub mutants: Vec<MutantRun>,
 }
 
 /// Reads the JSON lines of several runs: shards of one, or several machines'.
 pub fn read(paths: &[impl AsRef<Path>]) -> Result<Merged, InputError> {
-    let (mut rows, mut seconds) = (Vec::new(), 0.0);
+    let (mut read, mut seconds) = (Lines::default(), 0.0);
     for path in paths {
         let path = path.as_ref();
         let file = File::open(path).map_err(|e| InputError::new(path, e.to_string()))?;
-        seconds += read_run(path, BufReader::new(file), &mut rows)?;
+        seconds += read_run(path, BufReader::new(file), &mut read)?;
     }
-    let summary = Summary::of(&rows, seconds);
-    Ok(Merged { rows, summary })
+    let summary = Summary::of(&read.rows, seconds);
+    Ok(Merged {
+        rows: read.rows,
+        summary,
+        mutants: read.mutants,
+    })
 }
 
-/// Appends the rows of one file and returns the wall time of its runs.
-fn read_run(path: &Path, mut input: impl BufRead, rows: &mut Vec<Row>) -> Result<f64, InputError> {
+/// What lines amount to so far.
+#[derive(Default)]
+struct Lines {
+    rows: Vec<Row>,
+    mutants: Vec<MutantRun>,
+    /// Rows before this one are vouched for by a summary.
+    checked: usize,
+    /// Cells that no matrix has vouched for yet.
+    cells: Vec<Cell>,
+    /// Whether the last line was one that vouches.
+    complete: bool,
+}
+
+impl Lines {
+    /// Takes the next line; gives the wall time of a run that it ends.
+    fn take(&mut self, line: LineIn) -> Result<f64, String> {
+        self.complete = matches!(line, LineIn::Summary(_) | LineIn::Mutants(_));
+        match line {
+            LineIn::Row(row) => self.rows.push(*row),
+            LineIn::Mutant(cell) => self.cells.push(*cell),
+            LineIn::Summary(summary) => {
+                check(&summary, &self.rows[self.checked..])?;
+                self.checked = self.rows.len();
+                return Ok(summary.seconds);
+            }
+            LineIn::Mutants(matrix) => {
+                let cells = std::mem::take(&mut self.cells);
+                check_mutants(&matrix, &cells)?;
+                self.mutants.push(MutantRun { matrix, cells });
+            }
+        }
+        Ok(0.0)
+    }
+
+    fn is_complete(&self) -> bool {
+        self.complete && self.cells.is_empty() && self.checked == self.rows.len()
+    }
+}
+
+/// Takes the lines of one file and returns the wall time of its replays.
+fn read_run(path: &Path, mut input: impl BufRead, lines: &mut Lines) -> Result<f64, InputError> {
     let mut seconds = 0.0;
-    // Rows before this one are vouched for by a summary.
-    let mut checked = rows.len();
-    let mut complete = false;
+    lines.complete = false;
     let mut line = Vec::new();
     for number in 1.. {
         line.clear();
@@ -130,27 +198,31 @@ fn read_run(path: &Path, mut input: impl BufRead, rows: &mut Vec<Row>) -> Result
         if text.is_empty() {
             continue;
         }
-        match serde_json::from_slice(text) {
-            Ok(LineIn::Row(row)) => {
-                complete = false;
-                rows.push(*row);
-            }
-            Ok(LineIn::Summary(summary)) => {
-                check(&summary, &rows[checked..])
-                    .map_err(|message| InputError::at(path, number, message))?;
-                checked = rows.len();
-                complete = true;
-                seconds += summary.seconds;
-            }
-            Err(error) => return Err(InputError::at(path, number, explain(&error))),
-        }
+        let parsed = serde_json::from_slice(text).map_err(|e| explain(&e));
+        seconds += parsed
+            .and_then(|line| lines.take(line))
+            .map_err(|message| InputError::at(path, number, message))?;
     }
-    if complete {
+    if lines.is_complete() {
         Ok(seconds)
     } else {
         let message = "ends without a summary line: the run was cut off, or this is no result \
                        of `triptych replay --json`";
         Err(InputError::new(path, message))
+    }
+}
+
+/// A matrix must say what its cells say.
+fn check_mutants(matrix: &Matrix, cells: &[Cell]) -> Result<(), String> {
+    let actual = Matrix::of(cells, matrix.seconds, matrix.date.clone());
+    let counts = |m: &Matrix| [m.mutants, m.killed, m.absent, m.cells];
+    match counts(matrix) == counts(&actual) {
+        true => Ok(()),
+        false => Err(
+            "the summary of the mutants is not what the lines above it amount to: \
+                      lines were lost, added or changed"
+                .into(),
+        ),
     }
 }
 

@@ -15,6 +15,7 @@ pub mod error;
 pub mod generate;
 pub mod json;
 pub mod mesh;
+pub mod mutants;
 pub mod native;
 pub mod observe;
 pub mod output;

@@ -10,6 +10,7 @@ mod figures;
 mod glossary;
 mod head;
 mod index;
+mod mutants;
 mod rows;
 mod scene;
 
@@ -24,7 +25,7 @@ use sha2::{Digest, Sha256};
 
 use crate::again::Again;
 use crate::digest;
-use crate::json::Merged;
+use crate::json::{Merged, MutantRun};
 use crate::picture::Image;
 use crate::row::{Row, Summary, Verdict};
 use crate::text::clean;
@@ -39,6 +40,8 @@ pub struct ReportInput {
     pub run: RunInfo,
     /// The scenes, in the order in which they are shown.
     pub scenes: Vec<SceneReport>,
+    /// Runs of mutants: what the harness finds where something is wrong.
+    pub mutants: Vec<MutantRun>,
 }
 
 /// What was run, where and with what.
@@ -167,6 +170,7 @@ impl ReportInput {
                 .into_iter()
                 .map(scene)
                 .collect(),
+            mutants: merged.mutants.clone(),
         }
     }
 
@@ -232,6 +236,7 @@ pub fn page(input: &ReportInput) -> Markup {
                             (scene::section(i, scene))
                         }
                     }
+                    (mutants::section(&input.mutants))
                     (head::run(&input.run))
                     (glossary::section())
                 }

@@ -1,6 +1,6 @@
 //! `triptych replay`.
 
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
 use std::time::Instant;
 
 use anyhow::Context;
@@ -14,6 +14,7 @@ use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
 use crate::error::InputError;
+use crate::json::{self, MutantRun};
 use crate::output::complain;
 use crate::replay::gpu::{Adapter, From};
 use crate::replay::{Options, replay};
@@ -128,6 +129,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     let summary = results.summary(start.elapsed().as_secs_f64())?;
+    let mutants = last_mutants(&out, &mut results)?;
     let Results {
         mut reporter,
         scenes,
@@ -135,8 +137,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     } = results;
     let run = run_info(&adapters, library.as_ref(), summary.seconds);
     let page = out.join("index.html");
-    report::write(&page, &ReportInput { run, scenes })
-        .with_context(|| format!("cannot write {}", page.display()))?;
+    let input = ReportInput {
+        run,
+        scenes,
+        mutants,
+    };
+    report::write(&page, &input).with_context(|| format!("cannot write {}", page.display()))?;
     reporter.finish(&summary, Some(&page))?;
     if args.open {
         open(&page)?;
@@ -145,6 +151,21 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     verdict(&summary)
+}
+
+/// The last run of mutants, for the report; a file that cannot be read is worth a remark.
+fn last_mutants(out: &FilePath, results: &mut Results) -> anyhow::Result<Vec<MutantRun>> {
+    let file = out.join(super::mutants::FILE);
+    if !file.is_file() {
+        return Ok(Vec::new());
+    }
+    match json::read(&[file]) {
+        Ok(merged) => Ok(merged.mutants),
+        Err(error) => {
+            results.reporter.remark(&error.to_string())?;
+            Ok(Vec::new())
+        }
+    }
 }
 
 /// Says of every scene that could not be read why, a line each.
@@ -187,15 +208,7 @@ impl Args {
         if !options.gpu {
             return Ok(Vec::new());
         }
-        let adapters = Adapter::open_all(&self.adapter)?;
-        if adapters.is_empty() && self.adapter.is_empty() {
-            anyhow::bail!("no adapter; `./x setup` installs two software drivers");
-        }
-        if adapters.is_empty() {
-            let wanted = self.adapter.join(" or ");
-            anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
-        }
-        Ok(adapters)
+        adapters(&self.adapter)
     }
 
     /// What a command must repeat to see the same result.
@@ -236,6 +249,19 @@ impl Args {
             cache: None,
         }
     }
+}
+
+/// The adapters that were asked for; all of them, if none was.
+pub(super) fn adapters(wanted: &[String]) -> anyhow::Result<Vec<Adapter>> {
+    let adapters = Adapter::open_all(wanted)?;
+    if adapters.is_empty() && wanted.is_empty() {
+        anyhow::bail!("no adapter; `./x setup` installs two software drivers");
+    }
+    if adapters.is_empty() {
+        let wanted = wanted.join(" or ");
+        anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
+    }
+    Ok(adapters)
 }
 
 /// An option whose values are listed, ready for a shell.

@@ -13,7 +13,7 @@ use crate::{corpus, json, output};
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  triptych report shard1.json shard2.json --output report.html")]
 pub struct Args {
-    /// JSON lines written by `replay --json`
+    /// JSON lines written by `replay --json` and `mutants --json`
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Where the report goes [default: reports/out/index.html]
@@ -33,7 +33,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     report::write(&page, &ReportInput::from_rows(run, &merged))
         .with_context(|| format!("cannot write {}", page.display()))?;
     writeln!(output::stdout(), "Report: {}", page.display())?;
-    Ok(if merged.summary.diverging == 0 {
+    let mut runs = merged.mutants.iter();
+    let dead = runs.all(|run| run.matrix.killed == run.matrix.mutants);
+    Ok(if merged.summary.diverging == 0 && dead {
         Verdict::Agree
     } else {
         Verdict::Diverge

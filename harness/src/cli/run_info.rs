@@ -91,7 +91,7 @@ pub fn scene_report(outcome: Outcome) -> SceneReport {
 }
 
 /// Today's date in UTC, year-month-day.
-fn today() -> String {
+pub fn today() -> String {
     let since = SystemTime::now()
         .duration_since(UNIX_EPOCH)
         .unwrap_or_default();

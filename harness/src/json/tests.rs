@@ -39,9 +39,9 @@ fn written(rows: &[Row], seconds: f64) -> (String, Summary) {
 }
 
 fn parse(text: &str) -> Result<(Vec<Row>, f64), InputError> {
-    let mut rows = Vec::new();
-    let seconds = read_run(Path::new("a.jsonl"), text.as_bytes(), &mut rows)?;
-    Ok((rows, seconds))
+    let mut lines = Lines::default();
+    let seconds = read_run(Path::new("a.jsonl"), text.as_bytes(), &mut lines)?;
+    Ok((lines.rows, seconds))
 }
 
 fn message(text: &str) -> String {

@@ -64,6 +64,7 @@ fn input() -> ReportInput {
             ..RunInfo::default()
         },
         scenes: vec![bad, good],
+        mutants: Vec::new(),
     }
 }
 
@@ -237,7 +238,11 @@ fn a_report_of_rows_alone() {
         asked("compute", row("a", "sort", "spec", "gpu@x/compute")),
     ];
     let summary = Summary::of(&rows, 7.0);
-    let merged = Merged { rows, summary };
+    let merged = Merged {
+        rows,
+        summary,
+        mutants: Vec::new(),
+    };
     let input = ReportInput::from_rows(RunInfo::default(), &merged);
     assert_eq!(input.summary(), merged.summary);
     let page = page(&input).into_string();

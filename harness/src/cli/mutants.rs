@@ -1,0 +1,80 @@
+//! `triptych mutants`.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::Context;
+use triptych_gpu::raster::Path;
+
+use super::Verdict;
+use super::replay::adapters;
+use super::run_info::today;
+use crate::corpus;
+use crate::json::{self, MutantRun};
+use crate::mutants::{Columns, Lab, Matrix, mutants, select};
+use crate::output::{self, complain};
+
+/// Beside the report, which shows it: the last run of all mutants.
+pub const FILE: &str = "mutants.json";
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  \
+    triptych mutants                         all of them, on every adapter\n  \
+    triptych mutants tie-order --json o.json those with a cause, scene or name like it\n\n\
+    A run of all of them is shown by the reports of later replays. Exit code 1: one survives, \
+    or is killed in another way than the table says.")]
+pub struct Args {
+    /// Parts of names, scenes or causes; all mutants without one
+    #[arg(value_name = "PATTERN")]
+    patterns: Vec<String>,
+    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Vec<String>,
+    /// Write one JSON object per mutant and leg, and a summary
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let start = Instant::now();
+    let selected = select(mutants(), &args.patterns).map_err(anyhow::Error::msg)?;
+    let mut lab = Lab::new(adapters(&args.adapter)?);
+    let mut legs = Vec::new();
+    for name in lab.names() {
+        let paths = [Path::Compute, Path::Fragment, Path::Native];
+        legs.extend(paths.map(|path| format!("gpu@{name}/{}", path.name())));
+    }
+    let rows = selected.iter().map(|m| (m.name.as_str(), m.scene.as_str()));
+    let columns = Columns::new(&legs, rows);
+    let mut out = output::stdout();
+    for line in columns.header() {
+        writeln!(out, "{line}")?;
+    }
+    let (mut cells, mut wrong) = (Vec::new(), Vec::new());
+    for mutant in &selected {
+        let own = lab.run(mutant).map_err(anyhow::Error::msg)?;
+        writeln!(out, "{}", columns.line(&own.iter().collect::<Vec<_>>()))?;
+        wrong.extend(mutant.judge(&own).err());
+        cells.extend(own);
+    }
+    let matrix = Matrix::of(&cells, start.elapsed().as_secs_f64(), today());
+    writeln!(out, "\n{}", matrix.headline())?;
+    let run = MutantRun { matrix, cells };
+    let own = corpus::root()
+        .with_file_name("reports")
+        .join("out")
+        .join(FILE);
+    let whole = args.patterns.is_empty().then_some(own);
+    for file in args.json.iter().chain(&whole) {
+        json::write_mutants(file, &run)
+            .with_context(|| format!("cannot write {}", file.display()))?;
+    }
+    for line in &wrong {
+        complain(line);
+    }
+    Ok(match wrong.is_empty() {
+        true => Verdict::Agree,
+        false => Verdict::Diverge,
+    })
+}

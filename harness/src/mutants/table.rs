@@ -1,0 +1,255 @@
+//! The table of mutants: one file for each family.
+
+use std::path::{Path as FilePath, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use triptych_gpu::kernel::Fault;
+use triptych_gpu::raster::Path;
+use triptych_gpu::wgsl::{Sources, WgslError};
+
+use super::Outcome;
+use crate::cause::Cause;
+use crate::corpus::{self, Entry};
+use crate::text::hex;
+
+const TABLES: [(&str, &str); 3] = [
+    ("vertex.toml", include_str!("vertex.toml")),
+    ("raster.toml", include_str!("raster.toml")),
+    ("abuffer.toml", include_str!("abuffer.toml")),
+];
+
+/// A named defect, and where it must show.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Mutant {
+    /// What it is called.
+    pub name: String,
+    /// What is wrong, in words.
+    pub defect: String,
+    /// A scene of the corpus that shows it, or the path of one in the repository.
+    #[serde(default)]
+    pub scene: String,
+    /// The one cause that every leg must report, and nothing else: a canary.
+    pub cause: Option<Cause>,
+    /// How every leg must kill it, where no cause says so, and drivers cannot differ.
+    by: Option<Outcome>,
+    /// Whether a driver may hide it; then one leg must kill it, otherwise all.
+    #[serde(default)]
+    pub racy: bool,
+    /// Raster paths that have the defect.
+    #[serde(default = "compute")]
+    paths: Vec<PathName>,
+    /// Defects of the WGSL.
+    #[serde(default)]
+    patch: Vec<Patch>,
+    /// A defect of the host's part.
+    fault: Option<FaultName>,
+    /// The adapter can bind no more than so many bytes.
+    pub bindings: Option<u64>,
+    /// Why there is no such code to break; then nothing runs.
+    pub absent: Option<String>,
+}
+
+/// `find`, which occurs once in `file`, is replaced.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Patch {
+    file: String,
+    find: String,
+    replace: String,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum PathName {
+    Fragment,
+    Compute,
+    Native,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum FaultName {
+    HeadsNotCleared,
+    CounterNotCleared,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    mutant: Vec<Mutant>,
+}
+
+fn compute() -> Vec<PathName> {
+    vec![PathName::Compute]
+}
+
+/// All of them, family by family.
+///
+/// # Panics
+/// If a table of this repository is not sound.
+pub fn mutants() -> Vec<Mutant> {
+    let of = |(name, text): (&str, &str)| {
+        let table: Table = toml::from_str(text).unwrap_or_else(|e| panic!("{name}: {e}"));
+        table.mutant
+    };
+    TABLES.into_iter().flat_map(of).collect()
+}
+
+/// The mutants whose name, scene or cause contains one of the patterns; all of them
+/// without one.
+///
+/// # Errors
+/// A pattern that selects nothing.
+pub fn select(all: Vec<Mutant>, patterns: &[String]) -> Result<Vec<Mutant>, String> {
+    let matches = |m: &Mutant, pattern: &String| {
+        let cause = m.cause.map(Cause::name).unwrap_or_default();
+        [&m.name, &m.scene, &cause]
+            .iter()
+            .any(|text| text.contains(pattern.as_str()))
+    };
+    if let Some(pattern) = patterns
+        .iter()
+        .find(|pattern| !all.iter().any(|m| matches(m, pattern)))
+    {
+        return Err(format!(
+            "{pattern}: no mutant has a name, scene or cause like it"
+        ));
+    }
+    let wanted = |m: &Mutant| patterns.is_empty() || patterns.iter().any(|p| matches(m, p));
+    Ok(all.into_iter().filter(wanted).collect())
+}
+
+/// What a matrix depends on beside drivers: kernels and table.
+pub(super) fn digest() -> String {
+    let mut sha = Sha256::new();
+    for native in [false, true] {
+        for (name, text) in Sources::shipped(native).files() {
+            sha.update(format!("{name} {}\n{text}", text.len()));
+        }
+    }
+    for (name, text) in TABLES {
+        sha.update(format!("{name} {}\n{text}", text.len()));
+    }
+    hex(&sha.finalize())
+}
+
+impl Mutant {
+    /// The raster paths that have the defect.
+    pub fn paths(&self) -> impl Iterator<Item = Path> {
+        self.paths.iter().map(|path| match path {
+            PathName::Fragment => Path::Fragment,
+            PathName::Compute => Path::Compute,
+            PathName::Native => Path::Native,
+        })
+    }
+
+    /// The defect of the host's part.
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault.map(|fault| match fault {
+            FaultName::HeadsNotCleared => Fault::HeadsNotCleared,
+            FaultName::CounterNotCleared => Fault::CounterNotCleared,
+        })
+    }
+
+    /// How every leg that kills it must do so.
+    pub fn expected(&self) -> Option<Outcome> {
+        self.cause.map(Outcome::of).or(self.by)
+    }
+
+    /// The patched kernels. `TWICE` in a replacement stands for a share of twice the
+    /// bound, which `twice` works out.
+    ///
+    /// # Errors
+    /// A text to replace that is not there, or not once.
+    pub fn sources(&self, native: bool, twice: impl Fn() -> f64) -> Result<Sources, WgslError> {
+        let mut sources = Sources::shipped(native);
+        for Patch {
+            file,
+            find,
+            replace,
+        } in &self.patch
+        {
+            let replace = match replace.contains("TWICE") {
+                true => replace.replace("TWICE", &format!("{:e}f", twice())),
+                false => replace.clone(),
+            };
+            sources = sources.patched(file, find, &replace)?;
+        }
+        Ok(sources)
+    }
+
+    /// Its scene.
+    pub fn entry(&self) -> Entry {
+        let repository = FilePath::new(env!("CARGO_MANIFEST_DIR")).with_file_name("");
+        let path: PathBuf = match self.scene.ends_with(".toml") {
+            true => repository.join(&self.scene),
+            false => corpus::root().join(&self.scene).join("scene.toml"),
+        };
+        Entry {
+            name: self.scene.clone(),
+            family: "abuffer".into(),
+            path,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_mutant_says_how_it_dies() {
+        let all = mutants();
+        let names: BTreeSet<&str> = all.iter().map(|m| m.name.as_str()).collect();
+        assert_eq!(names.len(), all.len(), "names are unique");
+        for m in &all {
+            let broken = !m.patch.is_empty() || m.fault.is_some();
+            assert_ne!(
+                broken,
+                m.absent.is_some(),
+                "{}: a defect, or why none",
+                m.name
+            );
+            assert!(
+                m.cause.is_none() || m.by.is_none(),
+                "{}: said twice",
+                m.name
+            );
+            let dies = [Some(Outcome::Result), Some(Outcome::Structure), None];
+            assert!(dies.contains(&m.expected()), "{}: {:?}", m.name, m.by);
+        }
+    }
+
+    /// Also those of paths that this machine's adapters do not have.
+    #[test]
+    fn every_patch_compiles() {
+        for m in mutants() {
+            for path in m.paths() {
+                let sources = m.sources(path == Path::Native, || 1.0);
+                let sources = sources.unwrap_or_else(|e| panic!("{}: {e}", m.name));
+                for root in ["vertex", "raster", "abuffer"] {
+                    let program = sources
+                        .link(root)
+                        .and_then(triptych_gpu::wgsl::Linked::parse);
+                    program
+                        .map(drop)
+                        .unwrap_or_else(|e| panic!("{}: {e}", m.name));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn patterns_select_by_name_scene_and_cause() {
+        let count = |pattern: &str| select(mutants(), &[pattern.to_owned()]).map(|m| m.len());
+        assert_eq!(count("head-exchanged-in-two-steps"), Ok(1), "by name");
+        assert!(count("abuffer/contention").is_ok_and(|n| n > 1), "by scene");
+        assert!(count("tie-order").is_ok_and(|n| n > 1), "by cause");
+        let none = count("no-such-thing").expect_err("nothing is like it");
+        assert!(none.starts_with("no-such-thing: "), "{none}");
+    }
+}
