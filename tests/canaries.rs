@@ -20,13 +20,27 @@ use triptych_harness::replay::{Options, replay};
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    let cage = Arc::new(Cage::default());
+    let cage = Arc::new(Cage {
+        state: Mutex::default(),
+        order: mutants().into_iter().map(|m| m.name).zip(0..).collect(),
+    });
     let mut trials = Vec::new();
     for mutant in mutants() {
         let cage = cage.clone();
         let cause = mutant.cause.map_or_else(|| "mutant".into(), Cause::name);
         let name = format!("{cause}/{}", mutant.name);
         trials.push(Trial::test(name, move || cage.kill(&mutant)));
+    }
+    for (name, test) in [
+        ("lab/what-changes-nothing-survives", survives as Check),
+        ("lab/what-does-not-compile-is-no-kill", no_kill),
+        (
+            "lab/where-the-shipped-kernels-fail-nothing-is-said",
+            no_ground,
+        ),
+    ] {
+        let cage = cage.clone();
+        trials.push(Trial::test(name, move || test(&cage)));
     }
     trials.push(Trial::test("device-lost/destroyed", lose_device));
     trials.extend(leg::trials());
@@ -37,9 +51,10 @@ fn main() -> ExitCode {
 }
 
 /// The devices, opened when first asked for, and what came of the mutants so far.
-#[derive(Default)]
 struct Cage {
     state: Mutex<State>,
+    /// Where mutants stand in the table.
+    order: BTreeMap<String, usize>,
 }
 
 #[derive(Default)]
@@ -65,7 +80,8 @@ impl Cage {
         let cells = lab.run(mutant)?;
         state.lab = Some(lab);
         state.time += start.elapsed();
-        state.cells.extend(cells.clone());
+        let listed = |cell: &&Cell| self.order.contains_key(&cell.mutant);
+        state.cells.extend(cells.iter().filter(listed).cloned());
         Ok(mutant.judge(&cells)?)
     }
 
@@ -75,10 +91,8 @@ impl Cage {
         if cells.is_empty() {
             return;
         }
-        let order: BTreeMap<String, usize> =
-            mutants().into_iter().map(|m| m.name).zip(0..).collect();
         let mut rows: Vec<_> = by_mutant(cells);
-        rows.sort_by_key(|(name, _)| order[*name]);
+        rows.sort_by_key(|(name, _)| self.order[*name]);
         let names = cells.iter().map(|c| (c.mutant.as_str(), c.scene.as_str()));
         let legs: Vec<String> = legs(cells).into_iter().map(str::to_owned).collect();
         let columns = Columns::new(&legs, names);
@@ -90,6 +104,41 @@ impl Cage {
         }
         println!("{} mutants in {:.1} s\n", rows.len(), time.as_secs_f64());
     }
+}
+
+type Check = fn(&Cage) -> Result<(), Failed>;
+
+/// A mutant of the sort that is not in the table.
+fn other(replace: &str, more: &str) -> Result<Mutant, Failed> {
+    Ok(toml::from_str(&format!(
+        "name = \"other\"\ndefect = \"of a test\"\nscene = \"abuffer/quads\"\n{more}\n\
+         [[patch]]\nfile = \"abuffer\"\nfind = \"return x.key < y.key\"\nreplace = \"{replace}\""
+    ))?)
+}
+
+fn must_fail(said: Result<(), Failed>, words: &str) -> Result<(), Failed> {
+    match said {
+        Err(error) if error.message().is_some_and(|m| m.contains(words)) => Ok(()),
+        said => Err(format!("said {said:?}, must say {words}").into()),
+    }
+}
+
+fn survives(cage: &Cage) -> Result<(), Failed> {
+    let same = other("return y.key > x.key", "racy = true")?;
+    must_fail(cage.kill(&same), "other survives: of a test")
+}
+
+fn no_kill(cage: &Cage) -> Result<(), Failed> {
+    must_fail(
+        cage.kill(&other("return x.kex < y.key", "")?),
+        "abuffer.wgsl:",
+    )
+}
+
+/// With so little room a single row does not fit.
+fn no_ground(cage: &Cage) -> Result<(), Failed> {
+    let small = other("return x.key > y.key", "bindings = 600")?;
+    must_fail(cage.kill(&small), "the adapter's limit is")
 }
 
 fn open() -> Result<Lab, Failed> {

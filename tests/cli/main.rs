@@ -6,6 +6,7 @@
 
 mod corpus;
 mod mistakes;
+mod mutants;
 mod output;
 mod outside;
 mod results;

@@ -1,5 +1,7 @@
 use std::collections::BTreeMap;
 
+mod mutants;
+
 use super::*;
 use crate::cause::Cause;
 use crate::row::Class;

@@ -226,3 +226,6 @@ pub fn by_mutant(cells: &[Cell]) -> Vec<(&str, Vec<&Cell>)> {
     }
     mutants
 }
+
+#[cfg(test)]
+mod tests;

@@ -96,3 +96,37 @@ impl Matrix {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mutants::{Outcome, mutants};
+
+    #[test]
+    fn a_line_has_a_word_for_each_leg() {
+        let all = mutants();
+        let legs = ["gpu@a/compute", "gpu@a/native", "gpu@b/compute"].map(str::to_owned);
+        let columns = Columns::new(&legs, [("name", "scene")].into_iter());
+        let heads = &columns.header()[3..];
+        assert_eq!(heads[0], "             a                     b");
+        assert_eq!(heads[1], "             compute    native     compute");
+        let cell = |leg: &str, outcome| Cell {
+            mutant: "name".into(),
+            scene: "scene".into(),
+            outcome,
+            ..Cell::blank(&all[0], leg.into(), "no 64-bit integers".into())
+        };
+        let mut dead = cell(&legs[0], Outcome::Structure);
+        dead.causes = [(crate::cause::Cause::Cycle, 3)].into();
+        let hidden = cell(&legs[2], Outcome::NotObservable);
+        assert_eq!(
+            columns.line(&[&hidden, &dead]),
+            "name  scene  structure             not seen   cycle"
+        );
+        let absent = cell("", Outcome::NotRun);
+        assert_eq!(
+            columns.line(&[&absent]),
+            "name  scene  absent: no 64-bit integers"
+        );
+    }
+}

@@ -98,3 +98,56 @@ fn causes(cells: &[&Cell]) -> Markup {
         span.cause { a href={"#cause-" (cause.name())} { (cause.name()) } " " (count(*n)) }
     } }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::cause::Cause;
+    use crate::mutants::Matrix;
+
+    /// One that is killed, one that survives, and one that is absent, with a hostile note.
+    pub fn example() -> MutantRun {
+        let cell = |mutant: &str, leg: &str, outcome| Cell {
+            mutant: mutant.into(),
+            defect: "what is <wrong>".into(),
+            scene: "abuffer/quads".into(),
+            leg: leg.into(),
+            outcome,
+            causes: [(Cause::Cycle, 12)].into(),
+            unexplained: 0,
+            note: "\"<script>".into(),
+        };
+        let leg = "gpu@llvmpipe/compute";
+        let cells = vec![
+            cell("dead", leg, Outcome::Structure),
+            cell("alive", leg, Outcome::NotObservable),
+            cell("absent", "", Outcome::NotRun),
+        ];
+        MutantRun {
+            matrix: Matrix::of(&cells, 3.0, "2026-01-02".into()),
+            cells,
+        }
+    }
+
+    #[test]
+    fn a_survivor_and_old_kernels_stand_out() {
+        let mut run = example();
+        let html = section(std::slice::from_ref(&run)).into_string();
+        assert_eq!(html.matches("survives</strong>").count(), 1, "{html}");
+        assert_eq!(html.matches("absent: ").count(), 1, "{html}");
+        assert!(html.contains("title=\"&quot;&lt;script&gt;\""), "{html}");
+        assert!(!html.contains("Of other kernels"), "{html}");
+        run.matrix.kernels = "others".into();
+        let html = section(&[run]).into_string();
+        assert!(html.contains("Of other kernels"), "{html}");
+    }
+
+    #[test]
+    fn no_run_says_how_to_make_one() {
+        let html = section(&[]).into_string();
+        assert!(
+            html.contains("<code>cargo triptych mutants</code>"),
+            "{html}"
+        );
+    }
+}

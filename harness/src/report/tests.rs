@@ -64,7 +64,7 @@ fn input() -> ReportInput {
             ..RunInfo::default()
         },
         scenes: vec![bad, good],
-        mutants: Vec::new(),
+        mutants: vec![mutants::tests::example()],
     }
 }
 
@@ -262,6 +262,7 @@ fn nothing_is_never_good_news() {
     let empty = ReportInput {
         run: RunInfo::default(),
         scenes: Vec::new(),
+        mutants: Vec::new(),
     };
     let page_of = |input: &ReportInput| page(input).into_string();
     let page = page_of(&empty);

@@ -1,0 +1,62 @@
+//! `triptych mutants`, and how its matrix gets into the report.
+
+use std::fs;
+
+use super::results::{count, json};
+use super::{Place, SCENE};
+
+/// A mutant whose scene is beside the table, not in the corpus.
+const MUTANT: &str = "last-of-equals-shows";
+
+#[test]
+fn a_mutant_is_killed_and_written() {
+    let place = Place::new("mutants");
+    let ran = place
+        .run(&["mutants", MUTANT, "--json", "m.json"])
+        .expect(0);
+    assert_eq!(ran.stderr, "");
+    for part in [MUTANT, "tie-order", "1 mutant, 1 killed, none survives"] {
+        assert!(ran.stdout.contains(part), "{} lacks {part}", ran.stdout);
+    }
+    let mut lines = json(&place.root.join("m.json"));
+    let summary = lines.pop().expect("a summary");
+    assert_eq!(summary["type"], "mutants");
+    assert_eq!(count(&summary, "cells"), lines.len() as u64);
+    assert!(!lines.is_empty(), "there are adapters");
+    for line in &lines {
+        assert_eq!(line["outcome"], "result", "{line}");
+    }
+    let kept = place.root.join("reports/out/mutants.json");
+    assert!(!kept.exists(), "one mutant is not the matrix");
+}
+
+#[test]
+fn the_report_shows_the_last_run() {
+    let place = Place::new("mutants-report");
+    place.write("corpus/raster/quads/scene.toml", SCENE);
+    let page = || fs::read_to_string(place.root.join("reports/out/index.html")).expect("a report");
+    let replay = ["replay", "--no-cache", "--leg", "spec"];
+    place.run(&replay).expect(0);
+    assert!(page().contains("cargo triptych mutants"), "none was run");
+    place
+        .run(&["mutants", MUTANT, "--json", "reports/out/mutants.json"])
+        .expect(0);
+    place.run(&replay).expect(0);
+    assert!(page().contains(MUTANT), "the matrix is there");
+    place.run(&["report", "reports/out/mutants.json"]).expect(0);
+    assert!(page().contains(MUTANT), "also alone");
+    // A file that was damaged is worth a remark, not a failure.
+    place.write("reports/out/mutants.json", "{}\n");
+    let ran = place.run(&replay).expect(0);
+    assert!(ran.stdout.contains("mutants.json:1: "), "{}", ran.stdout);
+}
+
+#[test]
+fn what_is_no_mutant_is_named() {
+    let place = Place::new("mutants-none");
+    let ran = place.run(&["mutants", "no-such"]).expect(2);
+    assert_eq!(
+        ran.stderr,
+        "triptych: no-such: no mutant has a name, scene or cause like it\n"
+    );
+}
