@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
 use triptych_harness::cause::Cause;
 use triptych_harness::corpus;
@@ -72,13 +73,13 @@ impl Cage {
     fn kill(&self, mutant: &Mutant) -> Result<(), Failed> {
         let mut state = self.state();
         let start = Instant::now();
-        // Devices that failed are not asked again.
         let mut lab = match state.lab.take() {
             Some(lab) => lab,
             None => open()?,
         };
-        let cells = lab.run(mutant)?;
-        state.lab = Some(lab);
+        let cells = lab.run(mutant);
+        state.lab = Some(lab).filter(Lab::is_well);
+        let cells = cells?;
         state.time += start.elapsed();
         let listed = |cell: &&Cell| self.order.contains_key(&cell.mutant);
         state.cells.extend(cells.iter().filter(listed).cloned());
@@ -135,10 +136,19 @@ fn no_kill(cage: &Cage) -> Result<(), Failed> {
     )
 }
 
-/// With so little room a single row does not fit.
-fn no_ground(cage: &Cage) -> Result<(), Failed> {
-    let small = other("return x.key > y.key", "bindings = 600")?;
-    must_fail(cage.kill(&small), "the adapter's limit is")
+/// Kernels that are broken before the mutant comes.
+fn no_ground(_: &Cage) -> Result<(), Failed> {
+    let broken = other("return x.key > y.key", "")?;
+    let mut adapters = Adapter::open_all(&[]).map_err(|e| e.to_string())?;
+    adapters.truncate(1);
+    for adapter in &mut adapters {
+        adapter.kernels = Kernels::new(broken.sources(false, || 0.0)?);
+    }
+    let said = Lab::new(adapters).run(&broken).map(drop);
+    must_fail(
+        said.map_err(Failed::from),
+        "the shipped kernels do not agree",
+    )
 }
 
 fn open() -> Result<Lab, Failed> {

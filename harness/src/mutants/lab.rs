@@ -59,6 +59,11 @@ impl Lab {
         }
     }
 
+    /// Whether every device still works.
+    pub fn is_well(&self) -> bool {
+        self.adapters.iter().all(|a| a.gpu.check().is_ok())
+    }
+
     /// Names of the adapters.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.adapters.iter().map(|a| a.gpu.name.as_str())
