@@ -1,11 +1,26 @@
 //! Pipelines by the name of their entry point, bound by the names of variables.
 
+mod foreign;
+mod layout;
+mod skeleton;
+mod stage;
+
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::wgsl::{Program, Sources};
+
+pub use foreign::Foreign;
+pub use skeleton::skeleton;
+pub use stage::{STAGES, Stage};
+
+/// A program on a device.
+struct Module {
+    program: Program,
+    shader: wgpu::ShaderModule,
+}
 
 /// A pipeline and the variables that it uses.
 pub struct Kernel {
@@ -30,7 +45,9 @@ pub const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// The kernels of one device, compiled when first asked for.
 pub struct Kernels {
     sources: Sources,
-    programs: Mutex<BTreeMap<String, Arc<(Program, wgpu::ShaderModule)>>>,
+    /// Where an entry point comes from, if not from the file that ships it.
+    foreign: BTreeMap<&'static str, String>,
+    programs: Mutex<BTreeMap<String, Arc<Module>>>,
     kernels: Mutex<BTreeMap<(String, String), Arc<Kernel>>>,
 }
 
@@ -39,8 +56,22 @@ impl Kernels {
     pub fn new(sources: Sources) -> Self {
         Self {
             sources,
+            foreign: BTreeMap::new(),
             programs: Mutex::default(),
             kernels: Mutex::default(),
+        }
+    }
+
+    /// Kernels from these sources, but for the stages of `foreign`.
+    pub fn with_foreign(mut sources: Sources, foreign: &[Foreign]) -> Self {
+        let mut entries = BTreeMap::new();
+        for kernel in foreign {
+            sources = kernel.add_to(sources);
+            entries.extend(kernel.entries().map(|entry| (entry, kernel.key())));
+        }
+        Self {
+            foreign: entries,
+            ..Self::new(sources)
         }
     }
 
@@ -49,20 +80,20 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn compute(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, entry, |program, module| {
+        self.get(gpu, file, entry, |ours, module| {
             let pipeline = gpu
                 .device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some(entry),
                     layout: None,
-                    module,
+                    module: &module.shader,
                     entry_point: Some(entry),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     cache: None,
                 });
             Ok(Kernel {
                 pipeline: Pipeline::Compute(pipeline),
-                bindings: bindings(program, &[entry]),
+                bindings: bindings(ours, [(module, entry)]),
             })
         })
     }
@@ -72,7 +103,7 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn fragment(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, entry, |program, module| {
+        self.get(gpu, file, entry, |ours, module| {
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,
@@ -84,7 +115,7 @@ impl Kernels {
                     label: Some(entry),
                     layout: None,
                     vertex: wgpu::VertexState {
-                        module,
+                        module: &ours.shader,
                         entry_point: Some("place"),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         buffers: &[],
@@ -93,7 +124,7 @@ impl Kernels {
                     depth_stencil: None,
                     multisample: wgpu::MultisampleState::default(),
                     fragment: Some(wgpu::FragmentState {
-                        module,
+                        module: &module.shader,
                         entry_point: Some(entry),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         targets: &[Some(target)],
@@ -103,7 +134,7 @@ impl Kernels {
                 });
             Ok(Kernel {
                 pipeline: Pipeline::Render(pipeline),
-                bindings: bindings(program, &["place", entry]),
+                bindings: bindings(ours, [(ours, "place"), (module, entry)]),
             })
         })
     }
@@ -113,39 +144,39 @@ impl Kernels {
         gpu: &Gpu,
         file: &str,
         entry: &str,
-        make: impl FnOnce(&Program, &wgpu::ShaderModule) -> Result<Kernel, GpuError>,
+        make: impl FnOnce(&Module, &Module) -> Result<Kernel, GpuError>,
     ) -> Result<Arc<Kernel>, GpuError> {
         let mut kernels = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (file.to_owned(), entry.to_owned());
         if let Some(kernel) = kernels.get(&key) {
             return Ok(kernel.clone());
         }
-        let program = self.program(gpu, file)?;
-        let kernel = Arc::new(make(&program.0, &program.1)?);
+        let ours = self.module(gpu, file)?;
+        let module = match self.foreign.get(entry) {
+            Some(foreign) => self.module(gpu, foreign)?,
+            None => ours.clone(),
+        };
+        let kernel = Arc::new(make(&ours, &module)?);
         gpu.check()?;
         kernels.insert(key, kernel.clone());
         Ok(kernel)
     }
 
-    fn program(
-        &self,
-        gpu: &Gpu,
-        file: &str,
-    ) -> Result<Arc<(Program, wgpu::ShaderModule)>, GpuError> {
+    fn module(&self, gpu: &Gpu, file: &str) -> Result<Arc<Module>, GpuError> {
         let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(program) = programs.get(file) {
-            return Ok(program.clone());
+        if let Some(module) = programs.get(file) {
+            return Ok(module.clone());
         }
         let program = self.sources.link(file)?.parse()?;
-        let module = gpu
+        let shader = gpu
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(file),
                 source: wgpu::ShaderSource::Wgsl(program.linked.text.as_str().into()),
             });
-        let program = Arc::new((program, module));
-        programs.insert(file.to_owned(), program.clone());
-        Ok(program)
+        let module = Arc::new(Module { program, shader });
+        programs.insert(file.to_owned(), module.clone());
+        Ok(module)
     }
 }
 
@@ -178,12 +209,14 @@ impl Kernel {
     }
 }
 
-fn bindings(program: &Program, entries: &[&str]) -> Vec<(String, u32)> {
-    let mut all: Vec<(String, u32)> = entries
-        .iter()
-        .filter_map(|e| program.bindings(e))
-        .flatten()
-        .collect();
+/// What entry points bind, by the names that our file gives the numbers: the host knows
+/// no others.
+fn bindings<const N: usize>(ours: &Module, entries: [(&Module, &str); N]) -> Vec<(String, u32)> {
+    let names = ours.program.names();
+    let used = |(module, entry): &(&Module, &str)| module.program.bindings(entry);
+    let numbers = entries.iter().filter_map(used).flatten().map(|b| b.1);
+    let named = |number| Some((names.get(&number)?.clone(), number));
+    let mut all: Vec<(String, u32)> = numbers.filter_map(named).collect();
     all.sort_by_key(|b| b.1);
     all.dedup();
     all

@@ -2,6 +2,7 @@
 //! run.
 
 mod doctor;
+mod kernel;
 mod list;
 mod plan;
 mod replay;

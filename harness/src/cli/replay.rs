@@ -1,20 +1,23 @@
 //! `triptych replay`.
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Context;
 use clap::ValueEnum;
+use triptych_gpu::kernel::Foreign;
 use triptych_gpu::raster::Path;
 
 use super::Verdict;
+use super::kernel::{Kernels, all_run, kernels};
 use super::results::Results;
 use super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
 use crate::error::InputError;
-use crate::output::complain;
+use crate::output::{complain, stdout};
 use crate::replay::gpu::{Adapter, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
@@ -25,7 +28,8 @@ use crate::{corpus, embree};
 #[command(after_help = "Examples:\n  \
     triptych replay raster/ abuffer/quads\n  \
     triptych replay --adapter llvmpipe --path compute --json out.json\n  \
-    triptych replay my.obj --dump dump --no-cache\n\n\
+    triptych replay my.obj --dump dump --no-cache\n  \
+    triptych replay --kernel build=mine.wgsl abuffer/\n\n\
     A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
     JSON lines and exit code are those of the whole run.")]
 pub struct Args {
@@ -47,6 +51,10 @@ pub struct Args {
     /// Feed the GPU with the spec's results before this stage, its own from there
     #[arg(long, value_name = "STAGE", default_value = "cover")]
     gpu_from: Stage,
+    /// The user's kernels of a stage in place of ours (repeatable); `STAGE=?` prints the
+    /// stage's bindings as WGSL to start from
+    #[arg(long, value_name = "STAGE=FILE")]
+    kernel: Vec<String>,
     /// Run everything, whether a scene needs it or not
     #[arg(long)]
     no_skip: bool,
@@ -98,21 +106,34 @@ enum Stage {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
+    let foreign = match kernels(&args.kernel)? {
+        Kernels::Run(foreign) => foreign,
+        Kernels::Print(text) => {
+            stdout().write_all(text.as_bytes())?;
+            return Ok(Verdict::Agree);
+        }
+    };
     let entries = corpus::list(&corpus::root())?;
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
     let mut options = args.options();
-    let adapters = args.adapters(&options)?;
+    all_run(&foreign, &options)?;
+    let adapters = args.adapters(&options, &foreign)?;
     let library = if options.embree {
         Some(embree::library()?)
     } else {
         None
     };
     let out = corpus::root().with_file_name("reports").join("out");
-    if !args.no_cache && options.dump.is_none() {
+    if !args.no_cache && options.dump.is_none() && foreign.is_empty() {
         options.cache = Some(Cache::open(&out.join("cache")).context("cannot open the cache")?);
     }
     let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
     for remark in options.cache.iter().flat_map(Cache::remarks) {
+        results.reporter.remark(&remark)?;
+    }
+    for kernel in &foreign {
+        let (stage, file) = (kernel.stage.name, &kernel.file);
+        let remark = format!("stage {stage} runs {file} on every adapter, not our kernel");
         results.reporter.remark(&remark)?;
     }
     let mut unreadable = Vec::new();
@@ -183,11 +204,14 @@ fn open(page: &std::path::Path) -> anyhow::Result<()> {
 }
 
 impl Args {
-    fn adapters(&self, options: &Options) -> anyhow::Result<Vec<Adapter>> {
+    fn adapters(&self, options: &Options, foreign: &[Foreign]) -> anyhow::Result<Vec<Adapter>> {
         if !options.gpu {
             return Ok(Vec::new());
         }
-        let adapters = Adapter::open_all(&self.adapter)?;
+        let mut adapters = Adapter::open_all(&self.adapter)?;
+        for adapter in &mut adapters {
+            adapter.use_foreign(foreign);
+        }
         if adapters.is_empty() && self.adapter.is_empty() {
             anyhow::bail!("no adapter; `./x setup` installs two software drivers");
         }
@@ -208,6 +232,7 @@ impl Args {
         if !matches!(self.gpu_from, Stage::Cover) {
             options.push(chosen("--gpu-from", self.gpu_from));
         }
+        options.extend(self.kernel.iter().map(|kernel| option("--kernel", kernel)));
         options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
         Again { legs, options }
     }

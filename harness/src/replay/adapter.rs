@@ -2,7 +2,7 @@
 
 use triptych_gpu::context::{Gpu, adapters, short_name};
 use triptych_gpu::error::GpuError;
-use triptych_gpu::kernel::Kernels;
+use triptych_gpu::kernel::{Foreign, Kernels};
 use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::Sources;
 
@@ -18,6 +18,8 @@ pub struct Adapter {
     pub native: Option<Kernels>,
     /// What calibration found.
     pub grid: Grid,
+    /// The user's kernels, which run in place of ours.
+    pub foreign: Vec<Foreign>,
 }
 
 impl Adapter {
@@ -81,7 +83,20 @@ impl Adapter {
             kernels,
             native,
             grid,
+            foreign: Vec::new(),
         })
+    }
+
+    /// Runs a user's kernels from now on, in place of ours of the same stages.
+    /// Calibration was done with ours.
+    pub fn use_foreign(&mut self, foreign: &[Foreign]) {
+        if foreign.is_empty() {
+            return;
+        }
+        let kernels = |native| Kernels::with_foreign(Sources::shipped(native), foreign);
+        self.kernels = kernels(false);
+        self.native = self.native.take().map(|_| kernels(true));
+        self.foreign = foreign.to_vec();
     }
 
     /// The grid on which a path works: compute kernels take any.

@@ -61,6 +61,18 @@ impl Run<'_> {
             self.rows.skip("leg", "spec", &label, Class::Exact, reason);
             return Ok(());
         }
+        let fragment = path == Path::Fragment;
+        if let Some(foreign) = adapter.foreign.iter().find(|f| !f.serves(fragment)) {
+            let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+            let rasteriser = if fragment { "the hardware's" } else { "our" };
+            let stage = foreign.stage.name;
+            let reason = format!(
+                "{} has no kernel of stage {stage} for {rasteriser} rasteriser",
+                foreign.file
+            );
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+            return Ok(());
+        }
         let spec = self.spec(adapter.bits(path))?;
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
         match self.leg_or_error(&spec, adapter, path) {
