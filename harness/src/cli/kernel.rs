@@ -54,11 +54,13 @@ pub fn kernels(values: &[String]) -> anyhow::Result<Kernels> {
 /// # Errors
 /// One that it would not: its agreement would say nothing about it.
 pub fn all_run(foreign: &[Foreign], options: &Options) -> anyhow::Result<()> {
-    for Foreign { stage, file, .. } in foreign.iter().filter(|f| !runs(f, options)) {
-        let name = stage.name;
-        anyhow::bail!("--kernel {name}={file}: no leg that was asked for runs its kernels");
+    match foreign.iter().find(|f| !runs(f, options)) {
+        None => Ok(()),
+        Some(Foreign { stage, file, .. }) => {
+            let name = stage.name;
+            anyhow::bail!("--kernel {name}={file}: no leg that was asked for runs its kernels")
+        }
     }
-    Ok(())
 }
 
 fn runs(foreign: &Foreign, options: &Options) -> bool {
