@@ -111,7 +111,7 @@ fn mistakes_have_a_line_each() {
             "no stage is called built; there are transform, clip",
         ),
         (&["build=gone.wgsl"], "gone.wgsl: does not exist"),
-        (&["build=corpus"], "corpus: is no file"),
+        (&["build=corpus"], "corpus: is not a regular file"),
         (&["build=broken.wgsl"], "broken.wgsl:2: "),
         (
             &["build=size.wgsl"],

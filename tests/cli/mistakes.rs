@@ -145,3 +145,50 @@ fn files_that_cannot_be_written_or_read() {
     assert_parts(&only(&place, &["report", "gone.json"]), &["gone.json"]);
     assert_parts(&only(&place, &["report", "bad.json"]), &["bad.json:1: "]);
 }
+
+/// Counting what is not judged is no comparison, and neither is a leg that does not run.
+#[test]
+fn nothing_judged_is_no_success() {
+    let place = Place::new("unjudged");
+    // A triangle whose only sample lies on its edge: its pair is in class edge.
+    let edge = SCENE
+        .replace("size = [8, 8]", "size = [1, 1]")
+        .replace("height = 8", "height = 1");
+    let (edge, _) = edge.split_once("[[mesh]]").expect("a mesh");
+    let mesh = "[[mesh]]\ngenerate.faces = { vertices = [[-1, -1, 0], [1, 1, 0], [-1, 1, 0]], \
+                faces = [[0, 1, 2]] }\n[budget]\nedge = 1\n";
+    place.write("edge/scene.toml", &format!("{edge}{mesh}"));
+    let arguments = [
+        "replay",
+        "--leg",
+        "embree",
+        "--json",
+        "out.json",
+        "edge/scene.toml",
+    ];
+    assert_parts(&mistake(&place, &arguments), &["nothing was compared"]);
+    let json = std::fs::read_to_string(place.root.join("out.json")).expect("written");
+    assert_parts(&json, &["class edge", "\"compared\":0", "\"admitted\":1"]);
+}
+
+#[test]
+fn reports_of_what_is_no_run() {
+    let place = Place::new("no-run");
+    let pipe = place.root.join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(
+        made.is_ok_and(|m| m.success()),
+        "mkfifo is part of every Unix"
+    );
+    // Opening it would wait for a writer.
+    assert_parts(
+        &only(&place, &["report", "pipe"]),
+        &["pipe: is not a regular file"],
+    );
+    place.write("corpus/raster/quads/scene.toml", SCENE);
+    place
+        .run(&["replay", "--leg", "spec", "--json", "a.json"])
+        .expect(0);
+    let twice = only(&place, &["report", "a.json", "a.json"]);
+    assert_parts(&twice, &["a.json: is named twice"]);
+}

@@ -1,7 +1,5 @@
 //! `--kernel STAGE=FILE`: a user's kernels in place of ours.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use anyhow::Context;
@@ -9,6 +7,7 @@ use triptych_gpu::kernel::{Foreign, STAGES, Stage, skeleton};
 use triptych_gpu::raster;
 
 use crate::error::InputError;
+use crate::mesh::Intake;
 use crate::output::complain;
 use crate::replay::Options;
 
@@ -69,7 +68,9 @@ fn runs(foreign: &Foreign, options: &Options) -> bool {
 }
 
 fn read(stage: &'static Stage, file: &str) -> anyhow::Result<Foreign> {
-    let text = text(Path::new(file)).map_err(|message| InputError::new(file, message))?;
+    let bytes = Intake::from_disk().read(Path::new(file), FILE_MAX)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| InputError::new(file, format!("is not UTF-8: {error}")))?;
     Foreign::new(stage, file, &text).map_err(|mut errors| {
         let last = errors.pop();
         for error in errors {
@@ -77,25 +78,4 @@ fn read(stage: &'static Stage, file: &str) -> anyhow::Result<Foreign> {
         }
         last.map_or_else(|| anyhow::anyhow!("{file}: no reason"), anyhow::Error::from)
     })
-}
-
-/// A file's text, if it is a regular file of a sensible size.
-fn text(path: &Path) -> Result<String, String> {
-    let told = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => "does not exist".to_owned(),
-        _ => error.to_string(),
-    };
-    // A pipe would keep `open` waiting.
-    if !path.metadata().map_err(told)?.is_file() {
-        return Err("is no file".into());
-    }
-    let mut text = Vec::new();
-    let file = File::open(path).map_err(told)?;
-    file.take(FILE_MAX + 1)
-        .read_to_end(&mut text)
-        .map_err(told)?;
-    if text.len() as u64 > FILE_MAX {
-        return Err(format!("has more than {FILE_MAX} bytes"));
-    }
-    String::from_utf8(text).map_err(|error| format!("is not UTF-8: {error}"))
 }

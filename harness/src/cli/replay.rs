@@ -118,6 +118,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let mut options = args.options();
     all_run(&foreign, &options)?;
     let adapters = args.adapters(&options, &foreign)?;
+    let runs = |a: &Adapter, path: &Path| *path != Path::Native || a.native.is_some();
+    let run_any = |a: &Adapter| options.paths.iter().any(|path| runs(a, path));
+    anyhow::ensure!(
+        !options.gpu || adapters.iter().any(run_any),
+        "no adapter that was asked for has the 64-bit integers that --path native needs"
+    );
     let library = if options.embree {
         Some(embree::library()?)
     } else {

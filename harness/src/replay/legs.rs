@@ -57,8 +57,13 @@ impl Run<'_> {
     fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         if path == Path::Native && adapter.native.is_none() {
             let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-            let reason = "no 64-bit integers: compute takes its place".to_owned();
-            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+            let stands_in = self.options.paths.contains(&Path::Compute);
+            let reason = match stands_in {
+                true => "no 64-bit integers: compute takes its place",
+                false => "no 64-bit integers",
+            };
+            self.rows
+                .skip("leg", "spec", &label, Class::Exact, reason.to_owned());
             return Ok(());
         }
         let fragment = path == Path::Fragment;
