@@ -46,7 +46,7 @@ pub struct Args {
     path: Option<PathName>,
     /// Feed the GPU with the spec's results before this stage, its own from there
     #[arg(long, value_name = "STAGE", default_value = "cover")]
-    gpu_from: Stage,
+    gpu_from: From,
     /// Run everything, whether a scene needs it or not
     #[arg(long)]
     no_skip: bool,
@@ -82,18 +82,6 @@ enum PathName {
     Compute,
     /// The same with 64-bit integers, where an adapter has them
     Native,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Stage {
-    /// The GPU's own vertices, end to end
-    Transform,
-    /// The spec's triangles
-    Cover,
-    /// The spec's unsorted lists
-    Sort,
-    /// The spec's sorted lists
-    Resolve,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -205,7 +193,7 @@ impl Args {
         legs.extend(self.path.map(|path| chosen("--path", path)));
         let mut options = Vec::new();
         options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
-        if !matches!(self.gpu_from, Stage::Cover) {
+        if self.gpu_from != From::default() {
             options.push(chosen("--gpu-from", self.gpu_from));
         }
         options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
@@ -223,12 +211,7 @@ impl Args {
                 Some(PathName::Compute) => vec![Path::Compute],
                 Some(PathName::Native) => vec![Path::Native],
             },
-            from: match self.gpu_from {
-                Stage::Transform => From::Transform,
-                Stage::Cover => From::Cover,
-                Stage::Sort => From::Sort,
-                Stage::Resolve => From::Resolve,
-            },
+            from: self.gpu_from,
             skip: !self.no_skip,
             seed: self.seed,
             dump: self.dump.as_ref().map(Dump::new),
