@@ -1,7 +1,9 @@
 //! Where the GPU takes over.
 
+use clap::ValueEnum;
+
 /// From which stage on the GPU's own results are used; before it, the spec's.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum From {
     /// Everything is the GPU's own, end to end
     Transform,
@@ -25,6 +27,17 @@ pub enum From {
 impl From {
     /// Why a row of a stage before compares nothing.
     pub const GIVEN: &str = "the spec's result is used (--gpu-from)";
+
+    /// All of them, in the order in which the stages run.
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
+    }
+
+    /// The stage's name.
+    pub fn name(self) -> String {
+        let value = self.to_possible_value().expect("no stage is hidden");
+        value.get_name().to_owned()
+    }
 
     /// The first of the vertex stages that runs on the GPU; `None` if none does. The
     /// default runs them for a comparison of their own, and hands on the spec's triangles.
