@@ -105,7 +105,7 @@ fn bands_give_the_same_lists_and_picture() {
     for (name, small) in SMALL {
         for adapter in &adapters(small) {
             for path in [Path::Fragment, Path::Compute] {
-                for from in [From::Cover, From::Sort, From::Resolve] {
+                for from in [From::Cover, From::Build, From::Sort, From::Resolve] {
                     println!("{name}, {path:?}, from {from:?}");
                     agrees_in_bands(&loaded, adapter, path, from);
                 }

@@ -68,7 +68,11 @@ impl Cage {
         let outcome = outcome?;
         let wrong: Vec<String> = adapters
             .iter()
-            .filter_map(|a| exactly(canary.cause, &rows_of(&outcome, a)).err())
+            .filter_map(|a| {
+                let rows = rows_of(&outcome, a);
+                let cause = exactly(canary.cause, &rows);
+                cause.and_then(|()| in_stage(canary, &rows)).err()
+            })
             .collect();
         if wrong.is_empty() {
             return Ok(());
@@ -172,6 +176,18 @@ fn exactly(cause: Cause, rows: &[&Row]) -> Result<(), String> {
         "not exactly {name}: {causes:?}, {unexplained} unexplained\n{}",
         table.join("\n")
     ))
+}
+
+/// Whether only the row of a canary's stage diverges, where it has one.
+fn in_stage(canary: &Canary, rows: &[&Row]) -> Result<(), String> {
+    let diverging = rows.iter().filter(|r| r.verdict() == Verdict::Diverge);
+    let stages: BTreeSet<&str> = diverging.map(|r| r.stage.as_str()).collect();
+    match &canary.stage {
+        Some(stage) if !stages.iter().eq([stage]) => {
+            Err(format!("not in {stage} alone: {stages:?}"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Each cause that a comparer can give has a canary. `edge` is no difference: what

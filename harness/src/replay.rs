@@ -3,6 +3,7 @@
 mod adapter;
 mod dumps;
 pub mod embree;
+pub mod end_to_end;
 pub mod facts;
 pub mod gpu;
 mod legs;

@@ -17,6 +17,8 @@ use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 pub struct Canary {
     /// What it must be reported as.
     pub cause: Cause,
+    /// The stage that alone must report it, where that is stated.
+    pub stage: Option<String>,
     /// What is broken.
     pub name: String,
     /// A scene of the corpus that shows it, or the path of one in the repository.

@@ -42,13 +42,25 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Empty lists, with room for so many nodes.
+    /// No surfaces, and empty lists with room for so many nodes.
     pub(super) fn empty(gpu: &Gpu, pixels: u32, capacity: u32) -> Result<Self, GpuError> {
+        let opaque_key = gpu.filled("opaque_key", pixels, NOTHING)?;
+        let opaque_prim = gpu.filled("opaque_prim", pixels, NOTHING)?;
+        Self::in_front_of(gpu, [opaque_key, opaque_prim], pixels, capacity)
+    }
+
+    /// Empty lists, with room for so many nodes, in front of these surfaces.
+    fn in_front_of(
+        gpu: &Gpu,
+        [opaque_key, opaque_prim]: [wgpu::Buffer; 2],
+        pixels: u32,
+        capacity: u32,
+    ) -> Result<Self, GpuError> {
         let nodes = 16 * u64::from(capacity);
         Ok(Self {
             counter: gpu.filled("counter", 1, 0)?,
-            opaque_key: gpu.filled("opaque_key", pixels, NOTHING)?,
-            opaque_prim: gpu.filled("opaque_prim", pixels, NOTHING)?,
+            opaque_key,
+            opaque_prim,
             heads: gpu.filled("heads", pixels, EOL)?,
             nodes: gpu.storage("nodes", nodes)?,
             colours: gpu.storage("colours", nodes)?,
@@ -57,18 +69,26 @@ impl Buffers {
         })
     }
 
-    /// The lists and surfaces that are given for these pixels.
+    /// The surfaces that are given for these pixels, and the lists, or room for so many
+    /// nodes.
     pub(super) fn given(
         gpu: &Gpu,
         given: Given<'_>,
         pixels: Range<usize>,
+        capacity: u32,
     ) -> Result<Self, GpuError> {
-        let part = Part::of(given.lists, pixels.clone());
+        let opaque_key = gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?;
+        let opaque_prim = gpu.upload("opaque_prim", &given.opaque.prim[pixels.clone()])?;
+        let Some(lists) = given.lists else {
+            let surfaces = [opaque_key, opaque_prim];
+            return Self::in_front_of(gpu, surfaces, word(pixels.len()), capacity);
+        };
         let count = pixels.len() as u64;
+        let part = Part::of(lists, pixels);
         Ok(Self {
             counter: gpu.upload("counter", &[word(part.nodes.len())])?,
-            opaque_key: gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?,
-            opaque_prim: gpu.upload("opaque_prim", &given.opaque.prim[pixels])?,
+            opaque_key,
+            opaque_prim,
             heads: gpu.upload("heads", &part.heads)?,
             nodes: gpu.upload("nodes", &part.nodes)?,
             colours: gpu.upload("colours", &part.colours)?,

@@ -50,7 +50,7 @@ pub struct Args {
     path: Option<PathName>,
     /// Feed the GPU with the spec's results before this stage, its own from there
     #[arg(long, value_name = "STAGE", default_value = "cover")]
-    gpu_from: Stage,
+    gpu_from: From,
     /// The user's kernels of a stage in place of ours (repeatable); `STAGE=?` prints the
     /// stage's bindings as WGSL to start from
     #[arg(long, value_name = "STAGE=FILE")]
@@ -90,18 +90,6 @@ enum PathName {
     Compute,
     /// The same with 64-bit integers, where an adapter has them
     Native,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Stage {
-    /// The GPU's own vertices, end to end
-    Transform,
-    /// The spec's triangles
-    Cover,
-    /// The spec's unsorted lists
-    Sort,
-    /// The spec's sorted lists
-    Resolve,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -235,7 +223,7 @@ impl Args {
         legs.extend(self.path.map(|path| chosen("--path", path)));
         let mut options = Vec::new();
         options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
-        if !matches!(self.gpu_from, Stage::Cover) {
+        if self.gpu_from != From::default() {
             options.push(chosen("--gpu-from", self.gpu_from));
         }
         options.extend(self.kernel.iter().map(|kernel| option("--kernel", kernel)));
@@ -254,12 +242,7 @@ impl Args {
                 Some(PathName::Compute) => vec![Path::Compute],
                 Some(PathName::Native) => vec![Path::Native],
             },
-            from: match self.gpu_from {
-                Stage::Transform => From::Transform,
-                Stage::Cover => From::Cover,
-                Stage::Sort => From::Sort,
-                Stage::Resolve => From::Resolve,
-            },
+            from: self.gpu_from,
             skip: !self.no_skip,
             seed: self.seed,
             dump: self.dump.as_ref().map(Dump::new),

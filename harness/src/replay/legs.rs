@@ -8,7 +8,8 @@ use triptych_spec::raster::Fragment;
 use super::gpu::{Adapter, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
-use super::{pictures, skips, vertex};
+use super::vertex::{self, VertexLeg};
+use super::{end_to_end, pictures, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -122,7 +123,7 @@ impl Run<'_> {
     ) -> Result<std::io::Result<()>, GpuError> {
         let (scene, plan) = (&self.loaded.scene, self.plan.clone());
         let moved = self.moved(spec, adapter, path)?;
-        let from_own = self.options.from == From::Transform;
+        let from_own = self.options.from < From::Cover;
         let leg = GpuLeg {
             adapter,
             path,
@@ -140,7 +141,7 @@ impl Run<'_> {
                 from: From::Cover,
                 ..leg
             };
-            vertex::end_to_end(&leg, spec, &mut self.rows)?;
+            end_to_end::run(&leg, spec, &mut self.rows)?;
         }
         if self.options.skip && self.measures_skips(adapter, path) {
             self.saved_ms = skips::run(&leg, &seen, &mut self.rows)?;
@@ -165,7 +166,16 @@ impl Run<'_> {
             Err(lost @ GpuError::Lost { .. }) => return Err(lost),
             Err(error) => {
                 let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-                self.refused("vertex", &label, &spec.value, &error);
+                let failed = vertex::stage_of(&error, self.options.from);
+                for stage in vertex::STAGES {
+                    if stage == failed {
+                        self.refused(stage, &label, &spec.value, &error);
+                    } else {
+                        let reason = format!("the vertex stages did not finish, see {failed}");
+                        let rows = &mut self.rows;
+                        rows.skip(stage, "spec", &label, Class::Interval, reason);
+                    }
+                }
                 None
             }
             Ok(own) => own,
@@ -184,8 +194,8 @@ impl Run<'_> {
         }
     }
 
-    /// The GPU's own vertex stage, compared with the spec's. It is the same for both
-    /// paths, so it is judged on the compute path, which takes the finest grid; its
+    /// The GPU's own vertex stages, compared with the spec's. They are the same for all
+    /// paths, so they are judged on the compute path, which takes the finest grid; the
     /// triangles are given back where they are wanted and differ.
     fn vertices(
         &mut self,
@@ -195,18 +205,20 @@ impl Run<'_> {
     ) -> Result<Option<triptych_spec::vertex::Primitives>, GpuError> {
         let only_path = self.options.paths.len() == 1;
         let judged = path == Path::Compute || only_path;
-        if !judged && self.options.from != From::Transform {
+        let from = self.options.from;
+        if !judged && from >= From::Cover {
             return Ok(None);
         }
-        vertex::run(
-            &self.loaded.scene,
-            spec,
+        let leg = VertexLeg {
             adapter,
             path,
+            scene: &self.loaded.scene,
+            spec,
+            from,
             // A bare mesh states no budgets.
-            (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
-            judged.then_some(&mut self.rows),
-        )
+            budget: (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
+        };
+        leg.run(judged.then_some(&mut self.rows))
     }
 
     /// Skipping is measured once a scene, on the last adapter's compute path.
