@@ -1,5 +1,6 @@
 //! `triptych replay`.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -13,9 +14,8 @@ use super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
-use crate::error::InputError;
 use crate::output::complain;
-use crate::replay::gpu::{Adapter, From};
+use crate::replay::gpu::{Adapters, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
 use crate::row::Summary;
@@ -101,7 +101,13 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let entries = corpus::list(&corpus::root())?;
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
     let mut options = args.options();
-    let adapters = args.adapters(&options)?;
+    let found = args.adapters(&options)?;
+    if found.open.is_empty() && !found.broken.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    let adapters = found.open;
+    options.broken = found.broken;
     let library = if options.embree {
         Some(embree::library()?)
     } else {
@@ -133,7 +139,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         scenes,
         ..
     } = results;
-    let run = run_info(&adapters, library.as_ref(), summary.seconds);
+    let run = run_info(
+        &adapters,
+        &options.broken,
+        library.as_ref(),
+        summary.seconds,
+    );
     let page = out.join("index.html");
     report::write(&page, &ReportInput { run, scenes })
         .with_context(|| format!("cannot write {}", page.display()))?;
@@ -147,13 +158,13 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     verdict(&summary)
 }
 
-/// Says of every scene that could not be read why, a line each.
-fn could_not_run(mut errors: Vec<InputError>) -> anyhow::Result<Verdict> {
-    let last = errors.pop().context("no error")?;
-    for error in errors {
-        complain(error);
+/// Says of everything that a run could not do without why, a line each.
+fn could_not_run(mut reasons: Vec<impl Display>) -> anyhow::Result<Verdict> {
+    let last = reasons.pop().context("no reason")?;
+    for reason in reasons {
+        complain(reason);
     }
-    Err(last.into())
+    anyhow::bail!("{last}")
 }
 
 /// A run that compared nothing at all has not agreed on anything.
@@ -183,15 +194,16 @@ fn open(page: &std::path::Path) -> anyhow::Result<()> {
 }
 
 impl Args {
-    fn adapters(&self, options: &Options) -> anyhow::Result<Vec<Adapter>> {
+    fn adapters(&self, options: &Options) -> anyhow::Result<Adapters> {
         if !options.gpu {
-            return Ok(Vec::new());
+            return Ok(Adapters::default());
         }
-        let adapters = Adapter::open_all(&self.adapter)?;
-        if adapters.is_empty() && self.adapter.is_empty() {
+        let adapters = Adapters::open(&self.adapter);
+        let none = adapters.open.is_empty() && adapters.broken.is_empty();
+        if none && self.adapter.is_empty() {
             anyhow::bail!("no adapter; `./x setup` installs two software drivers");
         }
-        if adapters.is_empty() {
+        if none {
             let wanted = self.adapter.join(" or ");
             anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
         }
@@ -216,6 +228,7 @@ impl Args {
         let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
         Options {
             gpu: wanted(Leg::Gpu),
+            broken: Vec::new(),
             embree: wanted(Leg::Embree),
             paths: match self.path {
                 None => Options::default().paths,
