@@ -35,7 +35,8 @@ fn found() -> Vec<wgpu::Adapter> {
 
 fn adapters(small: Small) -> Vec<Adapter> {
     let open = |adapter: &wgpu::Adapter| {
-        let mut adapter = Adapter::open(adapter).expect("the adapter opens");
+        let name = context::short_name(&adapter.get_info());
+        let mut adapter = Adapter::open(adapter, &name).expect("the adapter opens");
         small(&mut adapter.gpu);
         adapter
     };

@@ -1,5 +1,6 @@
 //! `triptych replay`.
 
+use std::fmt::Display;
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -16,9 +17,8 @@ use super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
-use crate::error::InputError;
 use crate::output::{complain, stdout};
-use crate::replay::gpu::{Adapter, From};
+use crate::replay::gpu::{Adapter, Adapters, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
 use crate::row::Summary;
@@ -105,13 +105,13 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
     let mut options = args.options();
     all_run(&foreign, &options)?;
-    let adapters = args.adapters(&options, &foreign)?;
-    let runs = |a: &Adapter, path: &Path| *path != Path::Native || a.native.is_some();
-    let run_any = |a: &Adapter| options.paths.iter().any(|path| runs(a, path));
-    anyhow::ensure!(
-        !options.gpu || adapters.iter().any(run_any),
-        "no adapter that was asked for has the 64-bit integers that --path native needs"
-    );
+    let found = args.adapters(&options, &foreign)?;
+    if found.open.is_empty() && !found.broken.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    let adapters = found.open;
+    options.broken = found.broken;
     let library = if options.embree {
         Some(embree::library()?)
     } else {
@@ -148,7 +148,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         scenes,
         ..
     } = results;
-    let run = run_info(&adapters, library.as_ref(), summary.seconds);
+    let run = run_info(
+        &adapters,
+        &options.broken,
+        library.as_ref(),
+        summary.seconds,
+    );
     let page = out.join("index.html");
     report::write(&page, &ReportInput { run, scenes })
         .with_context(|| format!("cannot write {}", page.display()))?;
@@ -162,13 +167,13 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     verdict(&summary)
 }
 
-/// Says of every scene that could not be read why, a line each.
-fn could_not_run(mut errors: Vec<InputError>) -> anyhow::Result<Verdict> {
-    let last = errors.pop().context("no error")?;
-    for error in errors {
-        complain(error);
+/// Says of everything that a run could not do without why, a line each.
+fn could_not_run(mut reasons: Vec<impl Display>) -> anyhow::Result<Verdict> {
+    let last = reasons.pop().context("no reason")?;
+    for reason in reasons {
+        complain(reason);
     }
-    Err(last.into())
+    anyhow::bail!("{last}")
 }
 
 /// A run that compared nothing at all has not agreed on anything.
@@ -198,20 +203,27 @@ fn open(page: &std::path::Path) -> anyhow::Result<()> {
 }
 
 impl Args {
-    fn adapters(&self, options: &Options, foreign: &[Foreign]) -> anyhow::Result<Vec<Adapter>> {
+    fn adapters(&self, options: &Options, foreign: &[Foreign]) -> anyhow::Result<Adapters> {
         if !options.gpu {
-            return Ok(Vec::new());
+            return Ok(Adapters::default());
         }
-        let mut adapters = Adapter::open_all(&self.adapter)?;
-        for adapter in &mut adapters {
-            adapter.use_foreign(foreign);
-        }
-        if adapters.is_empty() && self.adapter.is_empty() {
+        let mut adapters = Adapters::open(&self.adapter);
+        let none = adapters.open.is_empty() && adapters.broken.is_empty();
+        if none && self.adapter.is_empty() {
             anyhow::bail!("no adapter; `./x setup` installs two software drivers");
         }
-        if adapters.is_empty() {
+        if none {
             let wanted = self.adapter.join(" or ");
             anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
+        }
+        let runs = |a: &Adapter, path: &Path| *path != Path::Native || a.native.is_some();
+        let runs_any = |a: &Adapter| options.paths.iter().any(|path| runs(a, path));
+        anyhow::ensure!(
+            adapters.open.is_empty() || adapters.open.iter().any(runs_any),
+            "no adapter that was asked for has the 64-bit integers that --path native needs"
+        );
+        for adapter in &mut adapters.open {
+            adapter.use_foreign(foreign);
         }
         Ok(adapters)
     }
@@ -235,6 +247,7 @@ impl Args {
         let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
         Options {
             gpu: wanted(Leg::Gpu),
+            broken: Vec::new(),
             embree: wanted(Leg::Embree),
             paths: match self.path {
                 None => Options::default().paths,

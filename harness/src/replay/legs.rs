@@ -5,7 +5,7 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
 
-use super::gpu::{Adapter, From, GpuLeg};
+use super::gpu::{Adapter, Broken, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
@@ -19,7 +19,10 @@ use crate::scene::value::Capacity;
 impl Run<'_> {
     /// Every adapter and path; legs that share a sub-pixel grid follow each other.
     pub(super) fn gpu(&mut self) -> Result<(), Stop> {
-        if self.adapters.is_empty() {
+        for broken in &self.options.broken {
+            self.broken(broken);
+        }
+        if self.adapters.is_empty() && self.options.broken.is_empty() {
             let reason = "no adapter; `triptych doctor` says what is missing".to_owned();
             self.rows.skip("all", "spec", "gpu", Class::Exact, reason);
             return Ok(());
@@ -53,6 +56,19 @@ impl Run<'_> {
             self.unit(Uses::Driver(&words), &inputs, |run| run.leg(adapter, path))?;
         }
         Ok(())
+    }
+
+    /// An adapter that was asked for is a leg that failed; another is skipped.
+    fn broken(&mut self, broken: &Broken) {
+        let label = format!("gpu@{}", broken.name);
+        let reason = broken.to_string();
+        if broken.asked {
+            let lost = matches!(broken.error, GpuError::Lost { .. });
+            let cause = lost.then_some(Cause::DeviceLost);
+            self.rows.fail("leg", "spec", &label, cause, reason);
+        } else {
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+        }
     }
 
     fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
