@@ -96,7 +96,8 @@ pub struct Outcome {
     pub facts: Option<Facts>,
     /// Pictures of the legs, then maps.
     pub pictures: Vec<Picture>,
-    /// What went wrong beside the point, such as a cache that cannot be written.
+    /// What is beside the point but should be known: what loading left out of a mesh,
+    /// a cache that cannot be written.
     pub remarks: Vec<String>,
 }
 

@@ -54,6 +54,17 @@ fn files_with_a_mistake() {
             "name/scene.toml",
             &PACKAGED.replace("bunny.obj", "rabbit.obj"),
         )
+        .write(
+            "surplus/scene.toml",
+            &scene("layers = 2, size = [4, 4]", "layers = 2, size = [4, 4, 4]"),
+        )
+        .write(
+            "outside/scene.toml",
+            &scene(
+                "[expect]",
+                "[expect]\nlists = [{ at = [99, 99], prims = [] }]",
+            ),
+        )
         .write("broken/scene.toml", "purpose = \"\n");
     for (file, parts) in [
         ("nan.obj", &["nan.obj:2: ", "nan"][..]),
@@ -68,6 +79,11 @@ fn files_with_a_mistake() {
         ("glass/scene.toml", &["glass/scene.toml:13: ", "1.5"]),
         ("file/scene.toml", &["gone.obj"]),
         ("name/scene.toml", &["name/scene.toml:5: ", "rabbit.obj"]),
+        ("surplus/scene.toml", &["surplus/scene.toml:15: ", "3", "2"]),
+        (
+            "outside/scene.toml",
+            &["outside/scene.toml:20: ", "[99, 99]", "[7, 7]"],
+        ),
         ("broken/scene.toml", &["broken/scene.toml:1: "]),
         ("gone.obj", &["gone.obj"]),
         ("gone/scene.toml", &["gone/scene.toml"]),

@@ -58,7 +58,7 @@ impl<'a> Run<'a> {
             pictures: Vec::new(),
             saved_ms: None,
             facts: None,
-            remarks: Vec::new(),
+            remarks: loaded.stats.remarks(),
         }
     }
 
