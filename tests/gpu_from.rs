@@ -4,18 +4,26 @@
 
 mod devices;
 
+use std::sync::LazyLock;
+
 use devices::Devices;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::Sources;
 use triptych_harness::corpus::{self, Entry};
+use triptych_harness::observe::Observed;
+use triptych_harness::plan::Plan;
 use triptych_harness::registry::stages;
-use triptych_harness::replay::gpu::{Adapter, From};
+use triptych_harness::replay::gpu::{Adapter, From, GpuLeg};
+use triptych_harness::replay::spec::SpecRun;
 use triptych_harness::replay::{Options, replay};
 use triptych_harness::row::{Row, Verdict};
+use triptych_harness::scene::load_entry;
+use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
-/// Stages that run on the GPU whatever comes after them is given, unless something is
-/// given to a later one: the default compares them, and hands on the spec's triangles.
+static DEVICES: LazyLock<Devices> = LazyLock::new(Devices::default);
+
+/// Stages that the default compares as well, though it hands on the spec's triangles.
 const VERTEX: [&str; 3] = ["transform", "clip", "snap"];
 
 /// A defect: its stage, a scene that shows it, the file, what is replaced, and by what.
@@ -78,17 +86,21 @@ const DEFECTS: [[&str; 5]; 8] = [
     ],
 ];
 
+fn entry(scene: &str) -> Entry {
+    let all = corpus::list(&corpus::root()).expect("the corpus can be listed");
+    let mut found = all.into_iter().filter(|e| e.name == scene);
+    found.next().expect("it is there")
+}
+
 /// Rows of a scene on every adapter, from a stage on.
 fn rows(scene: &str, adapters: &[Adapter], from: From, paths: &[Path]) -> Vec<Row> {
-    let all = corpus::list(&corpus::root()).expect("the corpus can be listed");
-    let entry: Option<&Entry> = all.iter().find(|e| e.name == scene);
     let options = Options {
         embree: false,
         paths: paths.to_vec(),
         from,
         ..Options::default()
     };
-    let outcome = replay(entry.expect("it is there"), adapters, &options);
+    let outcome = replay(&entry(scene), adapters, &options);
     let rows = outcome.expect("it can be replayed").rows;
     rows.into_iter()
         .filter(|r| r.b.starts_with("gpu@"))
@@ -104,8 +116,7 @@ fn every_stage_can_be_the_first() {
 
 #[test]
 fn from_every_stage_on_all_agrees() {
-    let devices = Devices::default();
-    let adapters = devices.take().expect("adapters");
+    let adapters = DEVICES.take().expect("adapters");
     for scene in ["raster/near-plane", "abuffer/mixed"] {
         for from in From::all() {
             let rows = rows(scene, &adapters, *from, &Options::default().paths);
@@ -113,6 +124,9 @@ fn from_every_stage_on_all_agrees() {
             for row in &rows {
                 assert_ne!(row.verdict(), Verdict::Diverge, "{at}: {row:#?}");
             }
+            // What runs from end to end is the leg itself, or the default's beside it.
+            let beside = rows.iter().any(|r| r.stage == "end to end");
+            assert!(!beside || *from == From::Cover, "{at}");
             for (adapter, stage) in adapters.iter().flat_map(|a| stages().map(move |s| (a, s))) {
                 let leg = format!("gpu@{}/compute", adapter.gpu.name);
                 let row = rows.iter().find(|r| r.b == leg && r.stage == stage.name);
@@ -128,6 +142,63 @@ fn from_every_stage_on_all_agrees() {
     }
 }
 
+/// Fragments change with what is clipped otherwise, if the GPU hands it on.
+#[test]
+fn later_stages_start_from_the_triangles_of_the_gpu() {
+    let mut adapters = DEVICES.take().expect("adapters");
+    adapters.spoil();
+    let [_, scene, file, find, replace] = DEFECTS[1];
+    let patched = Sources::shipped(false).patched(file, find, replace);
+    let patched = patched.expect("the kernel has this text once");
+    for adapter in adapters.iter_mut() {
+        adapter.kernels = Kernels::new(patched.clone());
+    }
+    let built = |from| -> Vec<u64> {
+        let rows = rows(scene, &adapters, from, &[Path::Compute]);
+        let build = rows.iter().filter(|r| r.stage == "build");
+        build.map(|r| r.compared).collect()
+    };
+    let (own, given) = (built(From::Transform), built(From::Cover));
+    assert_eq!((own.len(), given.len()), (adapters.len(), adapters.len()));
+    assert!(own.iter().zip(&given).all(|(a, b)| a != b), "{own:?}");
+    assert_eq!(built(From::Clip), own, "the GPU clips");
+    assert_eq!(built(From::Snap), given, "the spec clips");
+}
+
+/// Rows say what was compared; this says what ran.
+#[test]
+fn the_stages_before_do_not_run() {
+    let adapters = DEVICES.take().expect("adapters");
+    let scene = load_entry(&entry("abuffer/mixed"), None).expect("it loads");
+    let (scene, plan) = (&scene.scene, Plan::new(&scene.scene, true));
+    let snapped = primitives(scene, SUBPIXEL_BITS);
+    let run = SpecRun::new(scene, snapped, &plan).expect("a small scene");
+    let spec = Observed::new("spec", run);
+    for adapter in adapters.iter() {
+        for from in [From::Opaque, From::Build, From::Sort, From::Resolve] {
+            let leg = GpuLeg {
+                adapter,
+                path: Path::Compute,
+                scene,
+                spec: &spec,
+                plan: &plan,
+                capacity: None,
+                from,
+            };
+            let rasterizer = leg.rasterizer().expect("a small scene");
+            let seen = leg.abuffer(&rasterizer).expect("it runs");
+            let times = seen.abuffer.times;
+            let ran = [times.opaque, times.build, times.sort, times.resolve].map(|t| !t.is_zero());
+            let first = |stage| from <= stage;
+            let must = [From::Opaque, From::Build, From::Sort, From::Resolve].map(first);
+            assert_eq!(ran, must, "{} from {}", leg.label(), from.name());
+            assert!(seen.abuffer.opaque == spec.value.opaque, "{}", leg.label());
+            let sorted = seen.sorted.expect("the lists are sound");
+            assert!(sorted == spec.value.sorted, "{}", leg.label());
+        }
+    }
+}
+
 /// Whether a stage runs on the GPU and is compared.
 fn runs(stage: &str, from: From) -> bool {
     let beside = from == From::Cover && VERTEX.contains(&stage);
@@ -137,8 +208,7 @@ fn runs(stage: &str, from: From) -> bool {
 
 #[test]
 fn a_defect_shows_until_it_is_passed() {
-    let devices = Devices::default();
-    let mut adapters = devices.take().expect("adapters");
+    let mut adapters = DEVICES.take().expect("adapters");
     adapters.spoil();
     for [stage, scene, file, find, replace] in DEFECTS {
         let patched = Sources::shipped(false).patched(file, find, replace);

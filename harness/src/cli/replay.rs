@@ -118,9 +118,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         None
     };
     let out = corpus::root().with_file_name("reports").join("out");
-    if !args.no_cache && options.dump.is_none() && foreign.is_empty() {
-        options.cache = Some(Cache::open(&out.join("cache")).context("cannot open the cache")?);
-    }
+    options.cache = args.cache(&out)?;
     let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
     for remark in options.cache.iter().flat_map(Cache::remarks) {
         results.reporter.remark(&remark)?;
@@ -226,6 +224,15 @@ impl Args {
             adapter.use_foreign(foreign);
         }
         Ok(adapters)
+    }
+
+    /// The cache, unless all is to run.
+    fn cache(&self, out: &std::path::Path) -> anyhow::Result<Option<Cache>> {
+        if self.no_cache || self.dump.is_some() || !self.kernel.is_empty() {
+            return Ok(None);
+        }
+        let cache = Cache::open(&out.join("cache")).context("cannot open the cache")?;
+        Ok(Some(cache))
     }
 
     /// What a command must repeat to see the same result.
