@@ -17,6 +17,7 @@ use std::sync::Arc;
 use devices::Devices;
 use libtest_mimic::{Arguments, Failed, Trial};
 use triptych_harness::corpus::{self, Entry};
+use triptych_harness::registry::stages;
 use triptych_harness::replay::gpu::Adapter;
 use triptych_harness::replay::{Options, Outcome, replay};
 use triptych_harness::row::{Row, Verdict};
@@ -111,6 +112,14 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
             .map(label)
             .collect::<Vec<_>>()
     });
+    // Compared or skipped for a reason: every stage says what became of it.
+    for (adapter, stage) in adapters.iter().flat_map(|a| stages().map(move |s| (a, s))) {
+        let leg = format!("gpu@{}/compute", adapter.gpu.name);
+        let row = |r: &Row| r.b == leg && r.stage == stage.name;
+        if !outcome.rows.iter().any(row) {
+            wrong.push(format!("no row of stage {} for {leg}", stage.name));
+        }
+    }
     for leg in gpus.chain(["embree".to_owned()]) {
         let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.b == leg).collect();
         let compared = rows.iter().any(|r| r.compared > 0);

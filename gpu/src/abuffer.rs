@@ -20,8 +20,8 @@ pub use buffers::PROGRESS;
 pub struct Given<'a> {
     /// The nearest opaque surface of each pixel.
     pub opaque: &'a Opaque,
-    /// Lists of the whole target: built, or sorted as well.
-    pub lists: &'a Lists,
+    /// Lists of the whole target: built, or sorted as well. `None`: `build` is first.
+    pub lists: Option<&'a Lists>,
     /// Whether they are sorted, so that only `resolve` runs.
     pub sorted: bool,
 }
@@ -128,7 +128,7 @@ pub fn run(
 fn attempts(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Attempts {
     let Rasterizer { gpu, size, .. } = *rasterizer;
     let need = buffers::need(gpu);
-    if let Some(Given { lists, .. }) = options.given {
+    if let Some(lists) = options.given.and_then(|given| given.lists) {
         let rows = buffers::nodes_of_rows(lists, size.width);
         return Attempts::new(gpu, size, need, None).with_rows(rows);
     }

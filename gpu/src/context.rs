@@ -30,7 +30,7 @@ pub fn short_name(info: &wgpu::AdapterInfo) -> String {
 
 /// A device with what it needs to be asked and to be believed.
 pub struct Gpu {
-    /// Short name of the adapter.
+    /// Short name of the adapter, with a number where another is called the same.
     pub name: String,
     /// The adapter's own words.
     pub info: wgpu::AdapterInfo,
@@ -54,8 +54,15 @@ impl Gpu {
     /// # Errors
     /// The driver's reason.
     pub fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let info = adapter.get_info();
-        let name = short_name(&info);
+        Self::open_as(adapter, &short_name(&adapter.get_info()))
+    }
+
+    /// The same under a name that tells the adapter from others of its short name.
+    ///
+    /// # Errors
+    /// The driver's reason.
+    pub fn open_as(adapter: &wgpu::Adapter, name: &str) -> Result<Self, GpuError> {
+        let (info, name) = (adapter.get_info(), name.to_owned());
         let limits = wgpu::Limits {
             max_buffer_size: adapter.limits().max_buffer_size,
             max_storage_buffer_binding_size: adapter.limits().max_storage_buffer_binding_size,

@@ -1,5 +1,10 @@
 //! Pipelines by the name of their entry point, bound by the names of variables.
 
+mod foreign;
+mod layout;
+mod skeleton;
+mod stage;
+
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -7,6 +12,16 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::pass::Uses;
 use crate::wgsl::{Program, Sources, WgslError};
+
+pub use foreign::Foreign;
+pub use skeleton::skeleton;
+pub use stage::{STAGES, Stage};
+
+/// A program on a device.
+struct Module {
+    program: Program,
+    shader: wgpu::ShaderModule,
+}
 
 /// A pipeline and the variables that it uses.
 pub struct Kernel {
@@ -40,14 +55,13 @@ pub enum Fault {
     CounterNotCleared,
 }
 
-/// A compiled file.
-type Module = Arc<(Program, wgpu::ShaderModule)>;
-
 /// The kernels of one device, compiled when first asked for.
 pub struct Kernels {
     sources: Sources,
     fault: Option<Fault>,
-    programs: Mutex<BTreeMap<String, Module>>,
+    /// Where an entry point comes from, if not from the file that ships it.
+    foreign: BTreeMap<&'static str, String>,
+    programs: Mutex<BTreeMap<String, Arc<Module>>>,
     kernels: Mutex<BTreeMap<(String, String), Arc<Kernel>>>,
 }
 
@@ -57,8 +71,22 @@ impl Kernels {
         Self {
             sources,
             fault: None,
+            foreign: BTreeMap::new(),
             programs: Mutex::default(),
             kernels: Mutex::default(),
+        }
+    }
+
+    /// Kernels from these sources, but for the stages of `foreign`.
+    pub fn with_foreign(mut sources: Sources, foreign: &[Foreign]) -> Self {
+        let mut entries = BTreeMap::new();
+        for kernel in foreign {
+            sources = kernel.add_to(sources);
+            entries.extend(kernel.entries().map(|entry| (entry, kernel.key())));
+        }
+        Self {
+            foreign: entries,
+            ..Self::new(sources)
         }
     }
 
@@ -72,7 +100,7 @@ impl Kernels {
         let mut same = BTreeMap::new();
         for (file, program) in &programs {
             let text = sources.link(file)?.text;
-            same.insert(file.clone(), text == program.0.linked.text);
+            same.insert(file.clone(), text == program.program.linked.text);
         }
         programs.retain(|file, _| same[file]);
         let mut kernels = self.kernels().clone();
@@ -80,6 +108,7 @@ impl Kernels {
         Ok(Self {
             sources,
             fault,
+            foreign: self.foreign.clone(),
             programs: Mutex::new(programs),
             kernels: Mutex::new(kernels),
         })
@@ -90,7 +119,7 @@ impl Kernels {
         self.fault
     }
 
-    fn programs(&self) -> MutexGuard<'_, BTreeMap<String, Module>> {
+    fn programs(&self) -> MutexGuard<'_, BTreeMap<String, Arc<Module>>> {
         self.programs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -103,21 +132,21 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn compute(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, entry, |program, module| {
+        self.get(gpu, file, entry, |ours, module| {
             let pipeline = gpu
                 .device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some(entry),
                     layout: None,
-                    module,
+                    module: &module.shader,
                     entry_point: Some(entry),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     cache: None,
                 });
             Ok(Kernel {
                 pipeline: Pipeline::Compute(pipeline),
-                bindings: bindings(program, &[entry]),
-                uses: Arc::new(Uses::of(program, &[entry])),
+                bindings: bindings(ours, [(module, entry)]),
+                uses: uses([(module, entry)]),
             })
         })
     }
@@ -127,7 +156,7 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn fragment(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, entry, |program, module| {
+        self.get(gpu, file, entry, |ours, module| {
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,
@@ -139,7 +168,7 @@ impl Kernels {
                     label: Some(entry),
                     layout: None,
                     vertex: wgpu::VertexState {
-                        module,
+                        module: &ours.shader,
                         entry_point: Some("place"),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         buffers: &[],
@@ -148,7 +177,7 @@ impl Kernels {
                     depth_stencil: None,
                     multisample: wgpu::MultisampleState::default(),
                     fragment: Some(wgpu::FragmentState {
-                        module,
+                        module: &module.shader,
                         entry_point: Some(entry),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         targets: &[Some(target)],
@@ -158,8 +187,8 @@ impl Kernels {
                 });
             Ok(Kernel {
                 pipeline: Pipeline::Render(pipeline),
-                bindings: bindings(program, &["place", entry]),
-                uses: Arc::new(Uses::of(program, &["place", entry])),
+                bindings: bindings(ours, [(ours, "place"), (module, entry)]),
+                uses: uses([(ours, "place"), (module, entry)]),
             })
         })
     }
@@ -169,35 +198,39 @@ impl Kernels {
         gpu: &Gpu,
         file: &str,
         entry: &str,
-        make: impl FnOnce(&Program, &wgpu::ShaderModule) -> Result<Kernel, GpuError>,
+        make: impl FnOnce(&Module, &Module) -> Result<Kernel, GpuError>,
     ) -> Result<Arc<Kernel>, GpuError> {
         let mut kernels = self.kernels();
         let key = (file.to_owned(), entry.to_owned());
         if let Some(kernel) = kernels.get(&key) {
             return Ok(kernel.clone());
         }
-        let program = self.program(gpu, file)?;
-        let kernel = Arc::new(make(&program.0, &program.1)?);
+        let ours = self.module(gpu, file)?;
+        let module = match self.foreign.get(entry) {
+            Some(foreign) => self.module(gpu, foreign)?,
+            None => ours.clone(),
+        };
+        let kernel = Arc::new(make(&ours, &module)?);
         gpu.check()?;
         kernels.insert(key, kernel.clone());
         Ok(kernel)
     }
 
-    fn program(&self, gpu: &Gpu, file: &str) -> Result<Module, GpuError> {
+    fn module(&self, gpu: &Gpu, file: &str) -> Result<Arc<Module>, GpuError> {
         let mut programs = self.programs();
-        if let Some(program) = programs.get(file) {
-            return Ok(program.clone());
+        if let Some(module) = programs.get(file) {
+            return Ok(module.clone());
         }
         let program = self.sources.link(file)?.parse()?;
-        let module = gpu
+        let shader = gpu
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(file),
                 source: wgpu::ShaderSource::Wgsl(program.linked.text.as_str().into()),
             });
-        let program = Arc::new((program, module));
-        programs.insert(file.to_owned(), program.clone());
-        Ok(program)
+        let module = Arc::new(Module { program, shader });
+        programs.insert(file.to_owned(), module.clone());
+        Ok(module)
     }
 }
 
@@ -230,13 +263,26 @@ impl Kernel {
     }
 }
 
-fn bindings(program: &Program, entries: &[&str]) -> Vec<(String, u32)> {
-    let mut all: Vec<(String, u32)> = entries
-        .iter()
-        .filter_map(|e| program.bindings(e))
-        .flatten()
-        .collect();
+/// What entry points bind, by the names that our file gives the numbers: the host knows
+/// no others.
+fn bindings<const N: usize>(ours: &Module, entries: [(&Module, &str); N]) -> Vec<(String, u32)> {
+    let names = ours.program.names();
+    let used = |(module, entry): &(&Module, &str)| module.program.bindings(entry);
+    let numbers = entries.iter().filter_map(used).flatten().map(|b| b.1);
+    let named = |number| Some((names.get(&number)?.clone(), number));
+    let mut all: Vec<(String, u32)> = numbers.filter_map(named).collect();
     all.sort_by_key(|b| b.1);
     all.dedup();
     all
+}
+
+/// What entry points do to plain data together.
+fn uses<const N: usize>(entries: [(&Module, &str); N]) -> Arc<Uses> {
+    let mut all = Uses::default();
+    for (module, entry) in entries {
+        let Uses { reads, writes } = Uses::of(&module.program, &[entry]);
+        all.reads.extend(reads);
+        all.writes.extend(writes);
+    }
+    Arc::new(all)
 }

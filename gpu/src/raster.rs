@@ -32,6 +32,9 @@ pub enum Path {
 }
 
 impl Path {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Fragment, Self::Compute, Self::Native];
+
     /// Name on the command line and in results.
     pub fn name(self) -> &'static str {
         match self {

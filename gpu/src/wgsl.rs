@@ -21,7 +21,17 @@ pub struct WgslError {
 
 /// The WGSL files by name, without their ending.
 #[derive(Clone, Debug)]
-pub struct Sources(BTreeMap<&'static str, Cow<'static, str>>);
+pub struct Sources(BTreeMap<Cow<'static, str>, Cow<'static, str>>);
+
+/// Marks a file that does not ship. An import's name is trimmed, so none has it.
+const FOREIGN: &str = " ";
+
+fn file_name(name: &str) -> String {
+    match name.strip_prefix(FOREIGN) {
+        Some(path) => path.to_owned(),
+        None => format!("{name}.wgsl"),
+    }
+}
 
 /// A linked text and the origin of each line.
 #[derive(Clone, Debug)]
@@ -43,7 +53,10 @@ pub struct Program {
 
 macro_rules! shipped {
     ($($name:literal),* $(,)?) => {
-        BTreeMap::from([$(($name, Cow::Borrowed(include_str!(concat!($name, ".wgsl"))))),*])
+        BTreeMap::from([$((
+            Cow::Borrowed($name),
+            Cow::Borrowed(include_str!(concat!($name, ".wgsl")))
+        )),*])
     };
 }
 
@@ -65,7 +78,7 @@ impl Sources {
         );
         let native_wide = files.remove("wide_native");
         if let (true, Some(text)) = (native, native_wide) {
-            files.insert("wide", text);
+            files.insert("wide".into(), text);
         }
         Self(files)
     }
@@ -98,7 +111,20 @@ impl Sources {
 
     /// The texts by name.
     pub fn files(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.0.iter().map(|(name, text)| (*name, text.as_ref()))
+        self.0
+            .iter()
+            .map(|(name, text)| (name.as_ref(), text.as_ref()))
+    }
+
+    /// These files and one more, which may import them.
+    pub fn with(mut self, name: String, text: String) -> Self {
+        self.0.insert(name.into(), text.into());
+        self
+    }
+
+    /// The name among the sources of a file that does not ship. No import leads to it.
+    pub fn foreign_name(file: &str) -> String {
+        format!("{FOREIGN}{file}")
     }
 
     /// Links `root` with everything that it imports.
@@ -125,7 +151,7 @@ impl Sources {
             return Ok(());
         }
         let text = self.0.get(name).ok_or_else(|| WgslError {
-            file: format!("{}.wgsl", from.0),
+            file: file_name(from.0),
             line: from.1,
             message: format!("import of an unknown file: {name}"),
         })?;
@@ -135,7 +161,7 @@ impl Sources {
             } else {
                 linked.text.push_str(line);
                 linked.text.push('\n');
-                linked.origins.push((format!("{name}.wgsl"), number));
+                linked.origins.push((file_name(name), number));
             }
         }
         Ok(())
@@ -181,6 +207,31 @@ impl Linked {
 }
 
 impl Program {
+    /// A mistake at a line of the linked text, as a mistake at its origin.
+    pub fn error(&self, line: u32, message: &str) -> WgslError {
+        self.linked.error(line, message)
+    }
+
+    /// The line of the linked text where a span starts.
+    pub fn line_at(&self, span: naga::Span) -> u32 {
+        span.location(&self.linked.text).line_number
+    }
+
+    /// The first line of the linked text that contains `words`, or the first of all.
+    pub fn line_of(&self, words: &str) -> u32 {
+        let mut lines = (1..).zip(self.linked.text.lines());
+        lines
+            .find(|(_, line)| line.contains(words))
+            .map_or(1, |(number, _)| number)
+    }
+
+    /// The names of all resource variables by their bindings.
+    pub fn names(&self) -> BTreeMap<u32, String> {
+        let variables = self.module.global_variables.iter();
+        let named = |v: &naga::GlobalVariable| Some((v.binding.as_ref()?.binding, v.name.clone()?));
+        variables.filter_map(|(_, v)| named(v)).collect()
+    }
+
     /// The resource variables that an entry point uses: name and binding, in order
     /// of binding. `None` if there is no such entry point.
     pub fn bindings(&self, entry: &str) -> Option<Vec<(String, u32)>> {

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
-    /// A corner lies outside the bound of the vertex stage.
+    /// A position or a corner lies outside the bound of its vertex stage, or neighbours
+    /// do not meet.
     Vertex,
     /// A triangle covers a sample that it must not, or misses one that it must.
     Coverage,

@@ -1,7 +1,9 @@
 //! The command line. Exit code 0: all agree. 1: something diverges. 2: could not
 //! run.
 
+mod adapters;
 mod doctor;
+mod kernel;
 mod list;
 mod mutants;
 mod plan;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use triptych_gpu::raster::Path;
+
 use crate::cause::Cause;
 use crate::row::{Row, Verdict};
 
@@ -198,7 +200,13 @@ pub fn leg_parts(label: &str) -> (&str, Option<&str>, Option<&str>) {
     let Some((leg, rest)) = label.split_once('@') else {
         return (label, None, None);
     };
-    match rest.rsplit_once('/') {
+    // A leg that could not run has no path, and an adapter's name may have a slash.
+    let known = |path: &str| {
+        Path::ALL
+            .iter()
+            .any(|p| path.split(' ').next() == Some(p.name()))
+    };
+    match rest.rsplit_once('/').filter(|(_, path)| known(path)) {
         Some((adapter, path)) => (leg, Some(adapter), Some(path)),
         None => (leg, Some(rest), None),
     }

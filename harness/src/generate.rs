@@ -9,7 +9,7 @@ mod tests;
 use serde::Deserialize;
 
 use crate::mesh::{Mesh, TRIANGLES_MAX, VERTICES_MAX};
-use crate::scene::value::{Number, Point};
+use crate::scene::value::{Number, Point, exactly};
 
 /// A generator and its parameters. Lengths are in object space.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -29,6 +29,7 @@ pub enum Generator {
         /// Number of quads.
         layers: u32,
         /// Width and height.
+        #[serde(deserialize_with = "exactly")]
         size: [Number; 2],
         /// Distance of neighbours; 0 makes them coplanar.
         spacing: Number,
@@ -41,7 +42,7 @@ pub enum Generator {
     Fan {
         /// Number of triangles, at least 3.
         spokes: u32,
-        /// Distance of the rim.
+        /// Distance of the rim; not negative.
         radius: Number,
         /// Height of the hub over the rim.
         #[serde(default)]
@@ -51,8 +52,10 @@ pub enum Generator {
     /// each, which together cover it exactly once.
     Grid {
         /// Columns and rows.
+        #[serde(deserialize_with = "exactly")]
         cells: [u32; 2],
         /// Width and height of a cell.
+        #[serde(deserialize_with = "exactly")]
         cell: [Number; 2],
         /// How far inner vertices stray, as a share of the cell; under 0.25, so
         /// that no triangle turns over.
@@ -81,16 +84,19 @@ pub enum Generator {
     },
     /// A sphere around the origin, poles on the y axis.
     Sphere {
-        /// Radius.
+        /// Radius; not negative.
         radius: Number,
         /// Segments from pole to pole, at least 2, and around, at least 3.
+        #[serde(deserialize_with = "exactly")]
         segments: [u32; 2],
     },
     /// A torus around the y axis.
     Torus {
-        /// Radius of the ring, and of the tube.
+        /// Radius of the ring, and of the tube; neither negative.
+        #[serde(deserialize_with = "exactly")]
         radii: [Number; 2],
         /// Segments around the ring and around the tube, at least 3 each.
+        #[serde(deserialize_with = "exactly")]
         segments: [u32; 2],
     },
     /// A box around the origin, of 12 triangles.
@@ -163,6 +169,14 @@ impl Generator {
             Self::Box { size } => solid::cuboid(size.0),
         }?;
         shape.mesh()
+    }
+}
+
+/// Refuses a negative radius: it would turn a surface inside out.
+fn check_radius(name: &str, value: f64) -> Result<(), String> {
+    match value < 0.0 {
+        false => Ok(()),
+        true => Err(format!("{name} = {value} is negative; 0 or more is right")),
     }
 }
 

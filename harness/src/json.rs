@@ -123,9 +123,19 @@ pub struct Merged {
 /// Reads the JSON lines of several runs: shards of one, or several machines'.
 pub fn read(paths: &[impl AsRef<Path>]) -> Result<Merged, InputError> {
     let (mut read, mut seconds) = (Lines::default(), 0.0);
-    for path in paths {
+    for (at, path) in paths.iter().enumerate() {
         let path = path.as_ref();
-        let file = File::open(path).map_err(|e| InputError::new(path, e.to_string()))?;
+        let fail = |message: String| InputError::new(path, message);
+        // Its rows would count twice.
+        if paths[..at].iter().any(|before| before.as_ref() == path) {
+            return Err(fail("is named twice".into()));
+        }
+        // Asked before opening: opening a pipe would wait for its other end.
+        let metadata = path.metadata().map_err(|e| fail(e.to_string()))?;
+        if !metadata.is_file() {
+            return Err(fail("is not a regular file".into()));
+        }
+        let file = File::open(path).map_err(|e| fail(e.to_string()))?;
         seconds += read_run(path, BufReader::new(file), &mut read)?;
     }
     let summary = Summary::of(&read.rows, seconds);

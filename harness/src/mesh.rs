@@ -16,6 +16,7 @@ mod text;
 use std::path::Path;
 
 use crate::error::InputError;
+use crate::text::plural;
 
 pub use hair::{LAYOUT_MAX, layout_of, load as load_hair};
 pub use read::{BYTES_MAX, Intake};
@@ -64,6 +65,28 @@ pub struct Notes {
     pub points: u64,
     /// One line each: what is missing or was not understood, and did not matter.
     pub warnings: Vec<String>,
+}
+
+impl Notes {
+    /// Most warnings that are shown; the others are counted.
+    const SHOWN: usize = 3;
+
+    /// All of it in one line; `None` if nothing was left out.
+    pub fn line(&self) -> Option<String> {
+        let counts = [(self.lines, "line"), (self.points, "point")];
+        let counts = counts.into_iter().filter(|(n, _)| *n > 0);
+        let counts: Vec<String> = counts.map(|(n, what)| plural(n, what)).collect();
+        let mut parts = Vec::new();
+        if !counts.is_empty() {
+            parts.push(format!("{} ignored", counts.join(" and ")));
+        }
+        let shown = self.warnings.len().min(Self::SHOWN);
+        parts.extend_from_slice(&self.warnings[..shown]);
+        if let others @ 1.. = self.warnings.len() - shown {
+            parts.push(plural(others as u64, "more warning"));
+        }
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
 }
 
 impl Mesh {

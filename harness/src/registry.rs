@@ -16,7 +16,8 @@ pub struct Family {
     pub no_corpus: Option<&'static str>,
 }
 
-/// A stage. Its name is that of the spec's function and of its pass in a plan.
+/// A stage. Its name is that of the spec's function, of its pass in a plan, and of the
+/// value of `--gpu-from` that begins with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stage {
     /// The name.
@@ -25,8 +26,6 @@ pub struct Stage {
     pub compute: Twin,
     /// On the fragment path, after the vertex entry point [`PLACE`].
     pub fragment: Twin,
-    /// Whether `--gpu-from` can begin with it, or why not.
-    pub gpu_from: Result<(), &'static str>,
 }
 
 /// A stage's counterpart on a path of the GPU leg.
@@ -46,10 +45,7 @@ pub const FAMILIES: &[Family] = &[
     Family {
         name: "vertex",
         stages: &[
-            Stage {
-                gpu_from: Ok(()),
-                ..vertex("transform", &["transform"])
-            },
+            vertex("transform", &["transform"]),
             vertex("clip", &["clip"]),
             vertex("snap", &["snap"]),
         ],
@@ -61,7 +57,6 @@ pub const FAMILIES: &[Family] = &[
             name: "cover",
             compute: Twin::Entries(&["cover"]),
             fragment: Twin::Entries(&["cover_fragment"]),
-            gpu_from: Ok(()),
         }],
         no_corpus: None,
     },
@@ -72,13 +67,11 @@ pub const FAMILIES: &[Family] = &[
                 name: "opaque",
                 compute: Twin::Entries(&["opaque_nearest", "opaque_first"]),
                 fragment: Twin::Entries(&["opaque_nearest_fragment", "opaque_first_fragment"]),
-                gpu_from: Err("it covers for itself: from cover"),
             },
             Stage {
                 name: "build",
                 compute: Twin::Entries(&["build"]),
                 fragment: Twin::Entries(&["build_fragment"]),
-                gpu_from: Err("it covers for itself: from cover"),
             },
             per_pixel("sort", &["sort"]),
             per_pixel("resolve", &["resolve"]),
@@ -90,7 +83,6 @@ pub const FAMILIES: &[Family] = &[
 /// Names of result rows that are no stage, and what they compare.
 pub const ROWS: &[(&str, &str)] = &[
     ("expect", "the spec with a scene's closed-form answers"),
-    ("vertex", "corners after transform, clip and snap"),
     ("overflow", "attempts that ran out of nodes"),
     ("end to end", "all stages from the GPU's own vertices"),
     ("plan", "a leg with and without skipping"),
@@ -103,7 +95,6 @@ const fn vertex(name: &'static str, entries: &'static [&'static str]) -> Stage {
         name,
         compute: Twin::Entries(entries),
         fragment: Twin::None("the vertex stages run in compute kernels on both paths"),
-        gpu_from: Err("the vertex stages are judged together: from transform"),
     }
 }
 
@@ -112,7 +103,6 @@ const fn per_pixel(name: &'static str, entries: &'static [&'static str]) -> Stag
         name,
         compute: Twin::Entries(entries),
         fragment: Twin::None("works on pixels, not on triangles: one kernel serves both paths"),
-        gpu_from: Ok(()),
     }
 }
 

@@ -1,8 +1,10 @@
 //! Replays one scene through all legs and accounts for every difference.
 
 mod adapter;
+mod broken;
 mod dumps;
 pub mod embree;
+pub mod end_to_end;
 pub mod facts;
 pub mod gpu;
 mod legs;
@@ -26,7 +28,7 @@ use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{LoadError, load_entry};
 use facts::Facts;
-use gpu::{Adapter, From};
+use gpu::{Adapter, Broken, From};
 use rows::Rows;
 use run::{Run, Stop};
 
@@ -35,6 +37,8 @@ use run::{Run, Stop};
 pub struct Options {
     /// Replay on GPUs.
     pub gpu: bool,
+    /// Adapters on which that is not possible; every scene has a row for each.
+    pub broken: Vec<Broken>,
     /// Replay through Embree.
     pub embree: bool,
     /// Raster paths.
@@ -57,8 +61,9 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             gpu: true,
+            broken: Vec::new(),
             embree: true,
-            paths: vec![Path::Fragment, Path::Compute, Path::Native],
+            paths: Path::ALL.to_vec(),
             from: From::default(),
             skip: true,
             seed: None,
@@ -91,7 +96,8 @@ pub struct Outcome {
     pub facts: Option<Facts>,
     /// Pictures of the legs, then maps.
     pub pictures: Vec<Picture>,
-    /// What went wrong beside the point, such as a cache that cannot be written.
+    /// What is beside the point but should be known: what loading left out of a mesh,
+    /// a cache that cannot be written.
     pub remarks: Vec<String>,
 }
 

@@ -86,9 +86,10 @@ pub enum Verdict {
 }
 
 impl Row {
-    /// Items counted but not judged, as a share of those compared.
+    /// Items counted but not judged, as a share of those compared; all of them where
+    /// nothing was judged, so that nothing counts as compared.
     pub fn admitted_share(&self) -> f64 {
-        self.admitted as f64 / self.compared.max(1) as f64
+        self.admitted as f64 / self.compared.max(self.admitted).max(1) as f64
     }
 
     /// The verdict; a row that judged nothing and gives no reason diverges.

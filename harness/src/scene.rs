@@ -18,11 +18,17 @@ use triptych_spec::scene::Scene;
 use crate::corpus::{self, Entry};
 use crate::error::InputError;
 use crate::mesh::Intake;
-use crate::text::hex;
+use crate::text::{self, hex};
 use file::SceneFile;
 
 /// Largest scene.toml in bytes. Parsing takes up to a hundred times as much memory.
 pub const FILE_MAX: u64 = 1 << 20;
+
+/// Levels of nesting beyond which the parser of a scene.toml gives up.
+const LEVELS_MAX: usize = 80;
+
+/// Characters of a remark that are shown.
+const REMARK_SHOWN: usize = 1000;
 
 /// What a bare mesh is shown as.
 const BARE: &str = r#"
@@ -60,6 +66,21 @@ pub struct Stats {
     /// SHA-256 of everything that was read: scene, meshes, material libraries,
     /// seed. Generators are code and not part of it.
     pub sha256: String,
+}
+
+impl Stats {
+    /// One line for each mesh of which something was left out, by its name.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        for mesh in &self.meshes {
+            let name = mesh.source.split_once(' ').map_or("", |(_, name)| name);
+            let remark = mesh.notes.line().map(|line| format!("{name}: {line}"));
+            let remark = remark.map(|line| text::cut(&line, REMARK_SHOWN).into_owned());
+            // A scene may use a mesh more than once.
+            remarks.extend(remark.filter(|line| !remarks.contains(line)));
+        }
+        remarks
+    }
 }
 
 /// What loading saw of one mesh.
@@ -134,6 +155,8 @@ pub fn load_from(
     if let Some(seed) = seed {
         parsed.file.seed = seed;
     }
+    let places = parsed.file.expect.check_places(parsed.file.size.0);
+    places.map_err(|(span, message)| parsed.error(span, message))?;
     digest.update(parsed.file.seed.to_le_bytes());
     let meshes = source::load_all(intake, &parsed, &mut digest)?;
     let scene = flatten::flatten(&parsed, &meshes)?;
@@ -187,7 +210,13 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
         InputError {
             file: path.to_owned(),
             line,
-            message: e.message().to_owned(),
+            message: match e.message() {
+                // The parser's words where a dotted key nests too deep.
+                "recursion limit" => {
+                    format!("a key has more than {LEVELS_MAX} dotted parts, the limit")
+                }
+                message => message.to_owned(),
+            },
         }
     })?;
     Ok(Parsed { path, lines, file })

@@ -106,9 +106,9 @@ impl Bounded {
         (observed - self.value).abs() <= self.bound
     }
 
-    /// Whether the sign of the number is certain for every conforming result.
+    /// Whether every conforming result compares with zero as this number does.
     pub fn sign_is_certain(self) -> bool {
-        self.value.abs() > self.bound
+        self.bound == 0.0 || self.value.abs() > self.bound
     }
 
     /// Finishes one operation: the propagated error of the operands, and `roundings`

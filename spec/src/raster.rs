@@ -32,6 +32,32 @@ pub struct Setup {
     pub area: i64,
 }
 
+/// An exact quotient by the area: `quotient + rest / area`, with `0 <= rest < area`.
+#[derive(Clone, Copy)]
+struct Depth {
+    quotient: i64,
+    rest: i64,
+}
+
+impl Depth {
+    /// The quotient at a covered sample.
+    fn key(self) -> u32 {
+        u32::try_from(self.quotient).expect("a convex combination of 31-bit keys")
+    }
+
+    /// The sum of two quotients by the same area, which is as exact.
+    fn plus(self, step: Self, area: i64) -> Self {
+        let (quotient, rest) = (self.quotient + step.quotient, self.rest + step.rest);
+        match rest < area {
+            true => Self { quotient, rest },
+            false => Self {
+                quotient: quotient + 1,
+                rest: rest - area,
+            },
+        }
+    }
+}
+
 /// Columns `start..end` of a row.
 pub type Span = std::ops::Range<u32>;
 
@@ -73,15 +99,52 @@ impl Setup {
     /// Depth key: `floor(sum(E_i Z_i) / area)`, exact. Meaningful at covered
     /// samples, where it lies between the corners' keys.
     pub fn key(&self, edges: [i64; 3]) -> u32 {
+        self.depth(edges).key()
+    }
+
+    /// The same with the rest of its division.
+    fn depth(&self, edges: [i64; 3]) -> Depth {
         let numerator: i128 = (0..3)
             .map(|i| i128::from(edges[i]) * i128::from(self.corners[i][2]))
             .sum();
+        let area = i128::from(self.area);
         // The same quotient, faster where 64 bits hold the numerator.
-        let key = match i64::try_from(numerator) {
-            Ok(numerator) => i128::from(numerator.div_euclid(self.area)),
-            Err(_) => numerator.div_euclid(i128::from(self.area)),
+        let (quotient, rest) = match i64::try_from(numerator) {
+            Ok(small) => (small.div_euclid(self.area), small.rem_euclid(self.area)),
+            Err(_) => {
+                let small = |n: i128| i64::try_from(n).expect("a key, or less than the area");
+                (
+                    small(numerator.div_euclid(area)),
+                    small(numerator.rem_euclid(area)),
+                )
+            }
         };
-        u32::try_from(key).expect("a convex combination of 31-bit keys")
+        Depth { quotient, rest }
+    }
+
+    /// Whether a sample is covered and has this depth.
+    fn holds(&self, depth: Depth, point: [i64; 2]) -> bool {
+        let edges = self.edges(point);
+        self.covers(edges) && self.key(edges) == depth.key()
+    }
+
+    /// The change of the edge functions from one column to the next.
+    fn edge_steps(&self, bits: u32) -> [i64; 3] {
+        [0, 1, 2].map(|i| {
+            let (a, b) = self.edge_ends(i);
+            (a[1] - b[1]) << bits
+        })
+    }
+
+    /// The change of [`Setup::depth`] from one column to the next. Steps of edges are
+    /// below 2^28 and keys below 2^31, so 64 bits hold the sum.
+    fn depth_step(&self, bits: u32) -> Depth {
+        let steps = self.edge_steps(bits);
+        let numerator: i64 = (0..3).map(|i| steps[i] * self.corners[i][2]).sum();
+        Depth {
+            quotient: numerator.div_euclid(self.area),
+            rest: numerator.rem_euclid(self.area),
+        }
     }
 
     /// Smallest value of edge function `i` at a covered sample: 0 on a top or left
@@ -114,10 +177,10 @@ impl Setup {
     /// The columns of a row where edge function `i` is at least `least[i]`.
     pub fn span_above(&self, least: [i64; 3], row: u32, size: Size, bits: u32) -> Span {
         let origin = self.edges([sample(0, bits), sample(row, bits)]);
+        let steps = self.edge_steps(bits);
         let (mut start, mut end) = (0, i64::from(size.width));
         for i in 0..3 {
-            let (a, b) = self.edge_ends(i);
-            let step = (a[1] - b[1]) << bits; // change of E per column
+            let step = steps[i];
             let missing = least[i] - origin[i];
             match step.signum() {
                 1 => start = start.max(div_ceil(missing, step)),
@@ -148,17 +211,32 @@ pub fn cover_only(
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };
+        // Most triangles of a fine mesh never need it.
+        let mut step = None;
         for row in setup.rows(size, bits) {
-            for x in setup.span(row, size, bits) {
-                let edges = setup.edges([sample(x, bits), sample(row, bits)]);
-                debug_assert!(setup.covers(edges), "a span holds covered samples only");
-                let key = setup.key(edges);
+            let span = setup.span(row, size, bits);
+            if span.is_empty() {
+                continue;
+            }
+            // One division a row; from there quotient and rest are stepped.
+            let first = setup.edges([sample(span.start, bits), sample(row, bits)]);
+            let mut depth = setup.depth(first);
+            let end = span.end;
+            for x in span {
+                debug_assert!(
+                    setup.holds(depth, [sample(x, bits), sample(row, bits)]),
+                    "a span holds covered samples only, with their keys"
+                );
                 emit(Fragment {
                     pixel: row * size.width + x,
                     prim,
-                    key,
+                    key: depth.key(),
                     mask: 1,
                 });
+                if x + 1 < end {
+                    let step = *step.get_or_insert_with(|| setup.depth_step(bits));
+                    depth = depth.plus(step, setup.area);
+                }
             }
         }
     }

@@ -110,6 +110,11 @@ pub fn grid_position<T: Real>([x, y, z, w]: Position<T>, bits: u32) -> [T; 3] {
 /// x and y round to the nearest sub-pixel, ties to even; z is truncated, as in
 /// Appendix A, with depth 1 defined as [`DEPTH_ONE`] (the paper's
 /// `0x7fffffff` rounds to 2^31 in `f32`, which overflows an `int`: erratum e5).
+///
+/// Rounding moves a corner by up to half a sub-pixel. As it may turn a sliver over, so
+/// it may turn a corner of a cut polygon inwards, between edges that are nearly
+/// parallel or as short as a sub-pixel; the fan's triangles then overlap by as much.
+/// By rule every leg draws the fan as it is.
 pub fn snap(scene: &Scene, polygons: &Polygons<f64>, bits: u32) -> Primitives {
     let origin = [
         guard_origin(scene.size.width),

@@ -5,6 +5,8 @@
 //! own, with a corpus of its own, so that no report of the user's is touched.
 
 mod corpus;
+mod drivers;
+mod kernel;
 mod mistakes;
 mod mutants;
 mod output;

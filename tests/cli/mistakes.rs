@@ -54,6 +54,17 @@ fn files_with_a_mistake() {
             "name/scene.toml",
             &PACKAGED.replace("bunny.obj", "rabbit.obj"),
         )
+        .write(
+            "surplus/scene.toml",
+            &scene("layers = 2, size = [4, 4]", "layers = 2, size = [4, 4, 4]"),
+        )
+        .write(
+            "outside/scene.toml",
+            &scene(
+                "[expect]",
+                "[expect]\nlists = [{ at = [99, 99], prims = [] }]",
+            ),
+        )
         .write("broken/scene.toml", "purpose = \"\n");
     for (file, parts) in [
         ("nan.obj", &["nan.obj:2: ", "nan"][..]),
@@ -68,6 +79,11 @@ fn files_with_a_mistake() {
         ("glass/scene.toml", &["glass/scene.toml:13: ", "1.5"]),
         ("file/scene.toml", &["gone.obj"]),
         ("name/scene.toml", &["name/scene.toml:5: ", "rabbit.obj"]),
+        ("surplus/scene.toml", &["surplus/scene.toml:15: ", "3", "2"]),
+        (
+            "outside/scene.toml",
+            &["outside/scene.toml:20: ", "[99, 99]", "[7, 7]"],
+        ),
         ("broken/scene.toml", &["broken/scene.toml:1: "]),
         ("gone.obj", &["gone.obj"]),
         ("gone/scene.toml", &["gone/scene.toml"]),
@@ -115,10 +131,11 @@ fn options_with_a_mistake() {
         assert!(ran.stderr.contains("--help"), "{}", ran.stderr);
         assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
     }
-    // The stages that may take over are those of the registry.
+    // The GPU may take over at every stage of the registry.
     let ran = place.run(&["replay", "--gpu-from", "nonsuch"]);
-    let stages = triptych_harness::registry::stages().filter(|s| s.gpu_from.is_ok());
-    let stages: Vec<&str> = stages.map(|s| s.name).collect();
+    let stages: Vec<&str> = triptych_harness::registry::stages()
+        .map(|s| s.name)
+        .collect();
     let listed = format!("[possible values: {}]", stages.join(", "));
     assert!(
         ran.stderr.contains(&listed),
@@ -144,4 +161,51 @@ fn files_that_cannot_be_written_or_read() {
     assert_parts(&spec("--dump", "file/dump"), &["file/dump"]);
     assert_parts(&only(&place, &["report", "gone.json"]), &["gone.json"]);
     assert_parts(&only(&place, &["report", "bad.json"]), &["bad.json:1: "]);
+}
+
+/// Counting what is not judged is no comparison, and neither is a leg that does not run.
+#[test]
+fn nothing_judged_is_no_success() {
+    let place = Place::new("unjudged");
+    // A triangle whose only sample lies on its edge: its pair is in class edge.
+    let edge = SCENE
+        .replace("size = [8, 8]", "size = [1, 1]")
+        .replace("height = 8", "height = 1");
+    let (edge, _) = edge.split_once("[[mesh]]").expect("a mesh");
+    let mesh = "[[mesh]]\ngenerate.faces = { vertices = [[-1, -1, 0], [1, 1, 0], [-1, 1, 0]], \
+                faces = [[0, 1, 2]] }\n[budget]\nedge = 1\n";
+    place.write("edge/scene.toml", &format!("{edge}{mesh}"));
+    let arguments = [
+        "replay",
+        "--leg",
+        "embree",
+        "--json",
+        "out.json",
+        "edge/scene.toml",
+    ];
+    assert_parts(&mistake(&place, &arguments), &["nothing was compared"]);
+    let json = std::fs::read_to_string(place.root.join("out.json")).expect("written");
+    assert_parts(&json, &["class edge", "\"compared\":0", "\"admitted\":1"]);
+}
+
+#[test]
+fn reports_of_what_is_no_run() {
+    let place = Place::new("no-run");
+    let pipe = place.root.join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(
+        made.is_ok_and(|m| m.success()),
+        "mkfifo is part of every Unix"
+    );
+    // Opening it would wait for a writer.
+    assert_parts(
+        &only(&place, &["report", "pipe"]),
+        &["pipe: is not a regular file"],
+    );
+    place.write("corpus/raster/quads/scene.toml", SCENE);
+    place
+        .run(&["replay", "--leg", "spec", "--json", "a.json"])
+        .expect(0);
+    let twice = only(&place, &["report", "a.json", "a.json"]);
+    assert_parts(&twice, &["a.json: is named twice"]);
 }

@@ -99,3 +99,59 @@ fn help_and_version_are_results() {
         assert_eq!(ran.stderr, "", "{arguments:?}");
     }
 }
+
+/// What loading left out of a mesh is told in one line, by every command that loads it
+/// and whether or not the results come from the cache.
+#[test]
+fn what_a_mesh_lacks_is_told_once() {
+    let place = Place::new("notes");
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    let scene = |mesh: &str| format!("purpose = 'x'\nsize = [8, 8]\n{mesh}");
+    let twice = "[[mesh]]\nfile = 'lp.obj'\n[[mesh]]\nfile = 'lp.obj'\n";
+    let placed = "[[mesh]]\nfile = 'nomtl.obj'\nmaterial = 'glass'\n\
+        [[material]]\nname = 'glass'\ncolour = [1, 1, 1]\nopacity = 0.5\n";
+    place
+        .write(
+            "lp.obj",
+            &format!("{triangle}l 1 2\nl 2 3\nl 1 3\np 1\nf 1\nnonsense\n"),
+        )
+        .write("nomtl.obj", &format!("mtllib x.mtl\n{triangle}"))
+        .write("many.obj", &format!("mtllib a b c d e\n{triangle}"))
+        .write("twice.toml", &scene(twice))
+        .write("placed.toml", &scene(placed));
+    let undefined = "1 of 1 materials not defined, so their faces take the default";
+    let lp = format!(
+        "lp.obj: 3 lines and 2 points ignored; \
+        1 unknown statement ignored, the first on line 11: `nonsense`; {undefined}"
+    );
+    let missing = |name: &str| format!("material library `{name}` is not there");
+    let many = ["a", "b", "c"].map(missing).join("; ");
+    for (file, note) in [
+        ("lp.obj", lp.clone()),
+        ("twice.toml", lp),
+        (
+            "nomtl.obj",
+            format!("nomtl.obj: {}; {undefined}", missing("x.mtl")),
+        ),
+        // The scene gives all faces a material, so no default is taken.
+        ("placed.toml", format!("nomtl.obj: {}", missing("x.mtl"))),
+        ("many.obj", format!("many.obj: {many}; 3 more warnings")),
+    ] {
+        let planned = place.run(&["plan", file]).expect(0);
+        let told = |text: &str, line: &str| text.lines().filter(|l| *l == line).count();
+        let line = format!("  note  {note}");
+        assert_eq!(
+            told(&planned.stdout, &line),
+            1,
+            "{line:?} in\n{}",
+            planned.stdout
+        );
+        let replay = ["replay", "--leg", "embree", file];
+        for cached in [false, true] {
+            let replayed = place.run(&replay).expect(0);
+            let from_cache = replayed.stdout.contains("From the cache: ");
+            assert_eq!(from_cache, cached, "{}", replayed.stdout);
+            assert_eq!(told(&replayed.stdout, &note), 1, "{}", replayed.stdout);
+        }
+    }
+}

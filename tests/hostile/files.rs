@@ -112,6 +112,10 @@ fn libraries_give_materials_or_one_line() {
         ("newmtl a\nKd 1 nan 1\n", ":2: `nan` is not finite"),
         ("newmtl a\n\nd 1.5\n", ":3: `1.5` is outside 0 to 1"),
         ("newmtl a\nd\n", ":2: an opacity is one number from 0 to 1"),
+        (
+            "newmtl a\nmap_Kd a\0b\n",
+            ":2: byte 0x00 is not text; a material library is expected",
+        ),
     ];
     for (text, expected) in bad {
         let library = folder.write("my lib.mtl", text.as_bytes());

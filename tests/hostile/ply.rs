@@ -25,6 +25,8 @@ pub const CASES: &[Case] = &[
     ("no-end.ply", b"ply\nformat ascii 1.0\n", Fails(": no line `end_header` in the first 21 bytes")),
     ("no-format.ply", b"ply\nelement vertex 0\nend_header\n", Fails(": No format line found.")),
     ("odd-format.ply", b"ply\nformat xml 1.0\nend_header\n", Fails(":2: `format xml 1.0` is no PLY header statement")),
+    ("odd-version.ply", b"ply\nformat ascii 2.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 0\n", Fails(":2: version `2.0` of PLY; only 1.0 is known")),
+    ("no-version.ply", b"ply\nformat ascii\nend_header\n", Fails(":2: version `` of PLY; only 1.0 is known")),
     ("odd-type.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float80 x\nend_header\n", Fails(":4: `property float80 x` is no PLY header statement")),
     ("negative-count.ply", b"ply\nformat ascii 1.0\nelement vertex -1\nend_header\n", Fails(":3: `element vertex -1` is no PLY header statement")),
     ("count-beyond-u64.ply", b"ply\nformat ascii 1.0\nelement vertex 18446744073709551616\nend_header\n", Fails(":3: `element vertex 18446744073709551616` is no PLY header statement")),

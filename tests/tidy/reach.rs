@@ -79,7 +79,15 @@ fn every_wgsl_file_is_reached() {
     let mut files = files();
     let linker = files.iter().find(|f| f.name == "gpu/src/wgsl.rs");
     let linker = linker.expect("there is a linker").text().to_owned();
+    let readme = files.iter().find(|f| f.name == "README.md");
+    let readme = readme.expect("there is a README").text().to_owned();
     files.retain(|f| f.extension() == "wgsl");
+    let examples = files.extract_if(.., |f| f.name.starts_with("harness/examples/"));
+    let unnamed: Vec<String> = examples
+        .filter(|f| !readme.contains(&f.name))
+        .map(|f| format!("{}: the README does not lead to it", f.name))
+        .collect();
+    assert_none(&unnamed);
     let mut violations = Vec::new();
     for file in &files {
         let stem = file

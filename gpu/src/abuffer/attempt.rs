@@ -96,12 +96,13 @@ impl Run<'_, '_> {
     }
 
     fn buffers(&self) -> Result<Buffers, GpuError> {
+        let fault = self.rasterizer.kernels.fault();
         let Some(given) = self.options.given else {
-            let fault = self.rasterizer.kernels.fault();
             return Buffers::empty(self.gpu(), self.pixels(), self.capacity, fault);
         };
         let first = (self.band.first * self.rasterizer.size.width) as usize;
-        Buffers::given(self.gpu(), given, first..first + self.pixels() as usize)
+        let pixels = first..first + self.pixels() as usize;
+        Buffers::given(self.gpu(), given, pixels, self.capacity, fault)
     }
 
     fn frame(&self) -> Frame {
@@ -134,15 +135,14 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    /// Runs the passes that fill the buffers, unless they hold another leg's results.
+    /// Runs the passes that fill the buffers, but for those that hold another leg's
+    /// results.
     fn fill(&mut self, b: &Buffers, is_opaque: &impl Fn(u32) -> bool) -> Result<(), GpuError> {
-        if self.options.given.is_some() {
-            return Ok(());
-        }
-        if self.options.opaque {
+        let given = self.options.given;
+        if self.options.opaque && given.is_none() {
             self.opaque(b, is_opaque)?;
         }
-        if self.options.lists {
+        if self.options.lists && given.is_none_or(|given| given.lists.is_none()) {
             self.build(b, is_opaque)?;
         }
         Ok(())

@@ -43,9 +43,23 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Empty lists, with room for so many nodes.
+    /// No surfaces, and empty lists with room for so many nodes.
     pub(super) fn empty(
         gpu: &Gpu,
+        pixels: u32,
+        capacity: u32,
+        fault: Option<Fault>,
+    ) -> Result<Self, GpuError> {
+        let opaque_key = gpu.filled("opaque_key", pixels, NOTHING)?;
+        let opaque_prim = gpu.filled("opaque_prim", pixels, NOTHING)?;
+        let surfaces = [opaque_key, opaque_prim];
+        Self::in_front_of(gpu, surfaces, pixels, capacity, fault)
+    }
+
+    /// Empty lists, with room for so many nodes, in front of these surfaces.
+    fn in_front_of(
+        gpu: &Gpu,
+        [opaque_key, opaque_prim]: [wgpu::Buffer; 2],
         pixels: u32,
         capacity: u32,
         fault: Option<Fault>,
@@ -61,8 +75,8 @@ impl Buffers {
         };
         Ok(Self {
             counter: gpu.filled("counter", 1, counted)?,
-            opaque_key: gpu.filled("opaque_key", pixels, NOTHING)?,
-            opaque_prim: gpu.filled("opaque_prim", pixels, NOTHING)?,
+            opaque_key,
+            opaque_prim,
             heads: gpu.filled("heads", pixels, head)?,
             nodes: gpu.storage("nodes", nodes)?,
             colours: gpu.storage("colours", nodes)?,
@@ -71,18 +85,27 @@ impl Buffers {
         })
     }
 
-    /// The lists and surfaces that are given for these pixels.
+    /// The surfaces that are given for these pixels, and the lists, or room for so many
+    /// nodes.
     pub(super) fn given(
         gpu: &Gpu,
         given: Given<'_>,
         pixels: Range<usize>,
+        capacity: u32,
+        fault: Option<Fault>,
     ) -> Result<Self, GpuError> {
-        let part = Part::of(given.lists, pixels.clone());
+        let opaque_key = gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?;
+        let opaque_prim = gpu.upload("opaque_prim", &given.opaque.prim[pixels.clone()])?;
+        let Some(lists) = given.lists else {
+            let surfaces = [opaque_key, opaque_prim];
+            return Self::in_front_of(gpu, surfaces, word(pixels.len()), capacity, fault);
+        };
         let count = pixels.len() as u64;
+        let part = Part::of(lists, pixels);
         Ok(Self {
             counter: gpu.upload("counter", &[word(part.nodes.len())])?,
-            opaque_key: gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?,
-            opaque_prim: gpu.upload("opaque_prim", &given.opaque.prim[pixels])?,
+            opaque_key,
+            opaque_prim,
             heads: gpu.upload("heads", &part.heads)?,
             nodes: gpu.upload("nodes", &part.nodes)?,
             colours: gpu.upload("colours", &part.colours)?,

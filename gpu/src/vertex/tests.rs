@@ -1,6 +1,7 @@
 use triptych_spec::matrix::Matrix;
-use triptych_spec::scene::{Size, Vertex as SceneVertex};
+use triptych_spec::scene::{Size, Triangle, Vertex};
 
+use super::stages::VERTICES;
 use super::*;
 use crate::context::adapters;
 use crate::wgsl::Sources;
@@ -25,7 +26,7 @@ fn spiral(triangles: u32, spare: u32) -> Scene {
     let vertex = |i: u32| {
         let t = i as f32 / 8.0;
         let depth = [0.5, 1.0, 3.0][(i / 3 % 3) as usize] + (i % 3) as f32 / 8.0;
-        SceneVertex {
+        Vertex {
             position: [t.cos() / 2.0, t.sin() / 2.0, depth - 0.125],
             instance: 0,
         }
@@ -52,7 +53,7 @@ fn spiral(triangles: u32, spare: u32) -> Scene {
 fn batches_do_not_show() {
     let scene = spiral(300, 0);
     for (gpu, kernels) in devices(&Sources::shipped(false)) {
-        let whole = run(&gpu, &kernels, &scene, 8).expect("small");
+        let whole = run(&gpu, &kernels, &scene, 8, Given::Nothing, true).expect("small");
         let corners = whole.primitives.snapped.len();
         assert!(corners > 400 && corners != 600, "some are cut: {corners}");
         assert_eq!(
@@ -66,9 +67,36 @@ fn batches_do_not_show() {
             "the third is not"
         );
         for batch in [1, 7, 299, 300] {
-            let parts = run_in_batches(&gpu, &kernels, &scene, 8, batch).expect("small");
+            let stages = Stages::new(&gpu, &kernels, &scene, 8, batch).expect("small");
+            let parts = in_batches(stages, &scene, Given::Nothing, true).expect("small");
             assert_eq!(parts.primitives, whole.primitives, "batches of {batch}");
+            assert_eq!(parts.polygons, whole.polygons, "batches of {batch}");
         }
+    }
+}
+
+/// What a device made of a stage, handed back to it, gives what it gave before.
+#[test]
+fn given_results_take_the_place_of_the_stages_before() {
+    let scene = spiral(300, 0);
+    for (gpu, kernels) in devices(&Sources::shipped(false)) {
+        let whole = run(&gpu, &kernels, &scene, 8, Given::Nothing, true).expect("small");
+        let polygons = whole.polygons.as_ref().expect("they were asked for");
+        for batch in [7, 300] {
+            let from = |given, show| {
+                let stages = Stages::new(&gpu, &kernels, &scene, 8, batch).expect("small");
+                in_batches(stages, &scene, given, show).expect("small")
+            };
+            let clipped = from(Given::Positions(&whole.positions), true);
+            assert_eq!(clipped.polygons.as_ref(), Some(polygons), "{}", gpu.name);
+            assert_eq!(clipped.primitives, whole.primitives, "{}", gpu.name);
+            assert!(clipped.positions.is_empty() && clipped.times.transform.is_zero());
+            let snapped = from(Given::Polygons(polygons), true);
+            assert_eq!(snapped.primitives, whole.primitives, "{}", gpu.name);
+            assert!(snapped.polygons.is_none() && snapped.times.clip.is_zero());
+        }
+        let unseen = run(&gpu, &kernels, &scene, 8, Given::Nothing, false).expect("small");
+        assert!(unseen.polygons.is_none(), "nobody asked for them");
     }
 }
 
@@ -80,7 +108,7 @@ fn vertices_beyond_one_dispatch_are_transformed() {
     // 64 x 48 pixels, y down; the coordinates are short enough to be exact.
     let expected = [32.0 * last[0] + 32.0, 24.0 - 24.0 * last[1], last[2], 1.0];
     for (gpu, kernels) in devices(&Sources::shipped(false)) {
-        let run = run(&gpu, &kernels, &scene, 8).expect("67 MB of vertices");
+        let run = run(&gpu, &kernels, &scene, 8, Given::Nothing, true).expect("67 MB of vertices");
         let reached = run.positions.iter().filter(|p| p[3] == 1.0).count();
         assert_eq!(reached, scene.vertices.len(), "{}", gpu.name);
         let position = run.positions.last().expect("one for each vertex");
@@ -106,7 +134,8 @@ fn what_does_not_fit_its_slots_is_refused_by_name() {
         )
     });
     for (gpu, kernels) in devices(&greedy.expect("the kernel has these texts")) {
-        let error = run(&gpu, &kernels, &spiral(9, 0), 8).expect_err("corners double");
+        let error = run(&gpu, &kernels, &spiral(9, 0), 8, Given::Nothing, false)
+            .expect_err("corners double");
         let GpuError::Limit { what, limit, .. } = error else {
             panic!("{error}");
         };
@@ -117,7 +146,7 @@ fn what_does_not_fit_its_slots_is_refused_by_name() {
 #[test]
 fn a_scene_without_triangles_or_vertices_gives_nothing() {
     for (gpu, kernels) in devices(&Sources::shipped(false)) {
-        let run = run(&gpu, &kernels, &spiral(0, 0), 8).expect("empty");
+        let run = run(&gpu, &kernels, &spiral(0, 0), 8, Given::Nothing, true).expect("empty");
         assert_eq!((run.positions.len(), run.primitives.snapped.len()), (0, 0));
         assert_eq!(run.primitives.prims, [[0; 3]; 0]);
     }

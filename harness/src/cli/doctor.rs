@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::Verdict;
 use crate::calibrate::Grid;
-use crate::replay::gpu::Adapter;
+use crate::replay::gpu::{Adapter, Adapters};
 use crate::{corpus, embree, mesh, output};
 
 /// What the project found out about drivers the hard way.
@@ -25,30 +25,32 @@ const KNOWN: [(&str, &str); 3] = [
 
 pub fn run() -> anyhow::Result<Verdict> {
     let mut out = output::stdout();
-    let mut well = adapters(&mut out)?;
-    well &= embree(&mut out)?;
-    well &= meshes(&mut out)?;
+    let adapters = Adapters::open(&[]);
+    list(&mut out, &adapters)?;
+    let mut complete = !(adapters.open.is_empty() && adapters.broken.is_empty());
+    complete &= embree(&mut out)?;
+    complete &= meshes(&mut out)?;
     parts(&mut out)?;
-    let last = if well {
-        "All legs can run."
-    } else {
-        "Something is missing; `./x setup` installs it."
+    let usable = adapters.broken.is_empty();
+    let last = match (complete, usable) {
+        (false, _) => "Something is missing; `./x setup` installs it.",
+        (true, false) => "Not every adapter can be used; a replay goes on with the others.",
+        (true, true) => "All legs can run.",
     };
     writeln!(out, "\n{last}")?;
-    Ok(if well {
+    Ok(if complete && usable {
         Verdict::Agree
     } else {
         Verdict::Diverge
     })
 }
 
-fn adapters(out: &mut impl Write) -> anyhow::Result<bool> {
+fn list(out: &mut impl Write, Adapters { open, broken }: &Adapters) -> anyhow::Result<()> {
     writeln!(out, "Adapters")?;
-    let adapters = Adapter::open_all(&[])?;
-    if adapters.is_empty() {
+    if open.is_empty() && broken.is_empty() {
         writeln!(out, "  none; `./x setup` installs two software drivers")?;
     }
-    for Adapter { gpu, grid, .. } in &adapters {
+    for Adapter { gpu, grid, .. } in open {
         let info = &gpu.info;
         writeln!(out, "  {}: {}, {:?}", gpu.name, info.name, info.backend)?;
         writeln!(out, "    driver {} {}", info.driver, info.driver_info)?;
@@ -67,7 +69,10 @@ fn adapters(out: &mut impl Write) -> anyhow::Result<bool> {
             writeln!(out, "    known: {bug}")?;
         }
     }
-    Ok(!adapters.is_empty())
+    for broken in broken {
+        writeln!(out, "  {broken}")?;
+    }
+    Ok(())
 }
 
 fn embree(out: &mut impl Write) -> anyhow::Result<bool> {

@@ -1,14 +1,15 @@
 //! `triptych mutants`.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
 use std::time::Instant;
 
 use anyhow::Context;
 use triptych_gpu::raster::Path;
 
 use super::Verdict;
-use super::replay::adapters;
+use super::adapters::{adapters, could_not_run};
+use super::results::Results;
 use super::run_info::today;
 use crate::corpus;
 use crate::json::{self, MutantRun};
@@ -39,7 +40,12 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let selected = select(mutants(), &args.patterns).map_err(anyhow::Error::msg)?;
-    let mut lab = Lab::new(adapters(&args.adapter)?);
+    let found = adapters(&args.adapter)?;
+    if found.open.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    let mut lab = Lab::new(found.open);
     let mut legs = Vec::new();
     for name in lab.names() {
         let paths = [Path::Compute, Path::Fragment, Path::Native];
@@ -77,4 +83,22 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         true => Verdict::Agree,
         false => Verdict::Diverge,
     })
+}
+
+/// The last run of mutants, for the report; a file that cannot be read is worth a remark.
+pub(super) fn last_mutants(
+    out: &FilePath,
+    results: &mut Results,
+) -> anyhow::Result<Vec<MutantRun>> {
+    let file = out.join(FILE);
+    if !file.is_file() {
+        return Ok(Vec::new());
+    }
+    match json::read(&[file]) {
+        Ok(merged) => Ok(merged.mutants),
+        Err(error) => {
+            results.reporter.remark(&error.to_string())?;
+            Ok(Vec::new())
+        }
+    }
 }

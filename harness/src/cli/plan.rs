@@ -24,6 +24,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         let loaded = load_entry(&entry, None)?;
         let triangles = loaded.scene.triangles.len();
         writeln!(out, "{}: {triangles} triangles", entry.name)?;
+        for remark in loaded.stats.remarks() {
+            writeln!(out, "  note  {remark}")?;
+        }
         for pass in Plan::new(&loaded.scene, true).passes {
             let what = if pass.runs { "run " } else { "skip" };
             writeln!(out, "  {what}  {:10}  {}", pass.name, pass.reason)?;

@@ -1,22 +1,25 @@
 //! `triptych replay`.
 
-use std::path::{Path as FilePath, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Context;
 use clap::ValueEnum;
+use triptych_gpu::kernel::Foreign;
 use triptych_gpu::raster::Path;
 
 use super::Verdict;
+use super::adapters::{adapters, could_not_run};
+use super::kernel::{Kernels, all_run, kernels};
+use super::mutants::last_mutants;
 use super::results::Results;
 use super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
-use crate::error::InputError;
-use crate::json::{self, MutantRun};
-use crate::output::complain;
-use crate::replay::gpu::{Adapter, From};
+use crate::output::{complain, stdout};
+use crate::replay::gpu::{Adapter, Adapters, From};
 use crate::replay::{Options, replay};
 use crate::report::{self, ReportInput};
 use crate::row::Summary;
@@ -26,7 +29,8 @@ use crate::{corpus, embree};
 #[command(after_help = "Examples:\n  \
     triptych replay raster/ abuffer/quads\n  \
     triptych replay --adapter llvmpipe --path compute --json out.json\n  \
-    triptych replay my.obj --dump dump --no-cache\n\n\
+    triptych replay my.obj --dump dump --no-cache\n  \
+    triptych replay --kernel build=mine.wgsl abuffer/\n\n\
     A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
     JSON lines and exit code are those of the whole run.")]
 pub struct Args {
@@ -47,7 +51,11 @@ pub struct Args {
     path: Option<PathName>,
     /// Feed the GPU with the spec's results before this stage, its own from there
     #[arg(long, value_name = "STAGE", default_value = "cover")]
-    gpu_from: Stage,
+    gpu_from: From,
+    /// The user's kernels of a stage in place of ours (repeatable); `STAGE=?` prints the
+    /// stage's bindings as WGSL to start from
+    #[arg(long, value_name = "STAGE=FILE")]
+    kernel: Vec<String>,
     /// Run everything, whether a scene needs it or not
     #[arg(long)]
     no_skip: bool,
@@ -85,35 +93,40 @@ enum PathName {
     Native,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Stage {
-    /// The GPU's own vertices, end to end
-    Transform,
-    /// The spec's triangles
-    Cover,
-    /// The spec's unsorted lists
-    Sort,
-    /// The spec's sorted lists
-    Resolve,
-}
-
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
+    let foreign = match kernels(&args.kernel)? {
+        Kernels::Run(foreign) => foreign,
+        Kernels::Print(text) => {
+            stdout().write_all(text.as_bytes())?;
+            return Ok(Verdict::Agree);
+        }
+    };
     let entries = corpus::list(&corpus::root())?;
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
     let mut options = args.options();
-    let adapters = args.adapters(&options)?;
+    all_run(&foreign, &options)?;
+    let found = args.adapters(&options, &foreign)?;
+    if found.open.is_empty() && !found.broken.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    let adapters = found.open;
+    options.broken = found.broken;
     let library = if options.embree {
         Some(embree::library()?)
     } else {
         None
     };
     let out = corpus::root().with_file_name("reports").join("out");
-    if !args.no_cache && options.dump.is_none() {
-        options.cache = Some(Cache::open(&out.join("cache")).context("cannot open the cache")?);
-    }
+    options.cache = args.cache(&out)?;
     let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
     for remark in options.cache.iter().flat_map(Cache::remarks) {
+        results.reporter.remark(&remark)?;
+    }
+    for kernel in &foreign {
+        let (stage, file) = (kernel.stage.name, &kernel.file);
+        let remark = format!("stage {stage} runs {file} on every adapter, not our kernel");
         results.reporter.remark(&remark)?;
     }
     let mut unreadable = Vec::new();
@@ -135,7 +148,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         scenes,
         ..
     } = results;
-    let run = run_info(&adapters, library.as_ref(), summary.seconds);
+    let run = run_info(
+        &adapters,
+        &options.broken,
+        library.as_ref(),
+        summary.seconds,
+    );
     let page = out.join("index.html");
     let input = ReportInput {
         run,
@@ -151,30 +169,6 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     verdict(&summary)
-}
-
-/// The last run of mutants, for the report; a file that cannot be read is worth a remark.
-fn last_mutants(out: &FilePath, results: &mut Results) -> anyhow::Result<Vec<MutantRun>> {
-    let file = out.join(super::mutants::FILE);
-    if !file.is_file() {
-        return Ok(Vec::new());
-    }
-    match json::read(&[file]) {
-        Ok(merged) => Ok(merged.mutants),
-        Err(error) => {
-            results.reporter.remark(&error.to_string())?;
-            Ok(Vec::new())
-        }
-    }
-}
-
-/// Says of every scene that could not be read why, a line each.
-fn could_not_run(mut errors: Vec<InputError>) -> anyhow::Result<Verdict> {
-    let last = errors.pop().context("no error")?;
-    for error in errors {
-        complain(error);
-    }
-    Err(last.into())
 }
 
 /// A run that compared nothing at all has not agreed on anything.
@@ -204,11 +198,30 @@ fn open(page: &std::path::Path) -> anyhow::Result<()> {
 }
 
 impl Args {
-    fn adapters(&self, options: &Options) -> anyhow::Result<Vec<Adapter>> {
+    fn adapters(&self, options: &Options, foreign: &[Foreign]) -> anyhow::Result<Adapters> {
         if !options.gpu {
-            return Ok(Vec::new());
+            return Ok(Adapters::default());
         }
-        adapters(&self.adapter)
+        let mut adapters = adapters(&self.adapter)?;
+        let runs = |a: &Adapter, path: &Path| *path != Path::Native || a.native.is_some();
+        let runs_any = |a: &Adapter| options.paths.iter().any(|path| runs(a, path));
+        anyhow::ensure!(
+            adapters.open.is_empty() || adapters.open.iter().any(runs_any),
+            "no adapter that was asked for has the 64-bit integers that --path native needs"
+        );
+        for adapter in &mut adapters.open {
+            adapter.use_foreign(foreign);
+        }
+        Ok(adapters)
+    }
+
+    /// The cache, unless all is to run.
+    fn cache(&self, out: &std::path::Path) -> anyhow::Result<Option<Cache>> {
+        if self.no_cache || self.dump.is_some() || !self.kernel.is_empty() {
+            return Ok(None);
+        }
+        let cache = Cache::open(&out.join("cache")).context("cannot open the cache")?;
+        Ok(Some(cache))
     }
 
     /// What a command must repeat to see the same result.
@@ -218,9 +231,10 @@ impl Args {
         legs.extend(self.path.map(|path| chosen("--path", path)));
         let mut options = Vec::new();
         options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
-        if !matches!(self.gpu_from, Stage::Cover) {
+        if self.gpu_from != From::default() {
             options.push(chosen("--gpu-from", self.gpu_from));
         }
+        options.extend(self.kernel.iter().map(|kernel| option("--kernel", kernel)));
         options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
         Again { legs, options }
     }
@@ -229,6 +243,7 @@ impl Args {
         let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
         Options {
             gpu: wanted(Leg::Gpu),
+            broken: Vec::new(),
             embree: wanted(Leg::Embree),
             paths: match self.path {
                 None => Options::default().paths,
@@ -236,12 +251,7 @@ impl Args {
                 Some(PathName::Compute) => vec![Path::Compute],
                 Some(PathName::Native) => vec![Path::Native],
             },
-            from: match self.gpu_from {
-                Stage::Transform => From::Transform,
-                Stage::Cover => From::Cover,
-                Stage::Sort => From::Sort,
-                Stage::Resolve => From::Resolve,
-            },
+            from: self.gpu_from,
             skip: !self.no_skip,
             seed: self.seed,
             dump: self.dump.as_ref().map(Dump::new),
@@ -249,19 +259,6 @@ impl Args {
             cache: None,
         }
     }
-}
-
-/// The adapters that were asked for; all of them, if none was.
-pub(super) fn adapters(wanted: &[String]) -> anyhow::Result<Vec<Adapter>> {
-    let adapters = Adapter::open_all(wanted)?;
-    if adapters.is_empty() && wanted.is_empty() {
-        anyhow::bail!("no adapter; `./x setup` installs two software drivers");
-    }
-    if adapters.is_empty() {
-        let wanted = wanted.join(" or ");
-        anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
-    }
-    Ok(adapters)
 }
 
 /// An option whose values are listed, ready for a shell.

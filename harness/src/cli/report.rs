@@ -29,7 +29,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
             .join("out/index.html")
     };
     let page = args.output.clone().unwrap_or_else(default);
-    let run = run_info(&[], None, merged.summary.seconds);
+    let run = run_info(&[], &[], None, merged.summary.seconds);
     report::write(&page, &ReportInput::from_rows(run, &merged))
         .with_context(|| format!("cannot write {}", page.display()))?;
     writeln!(output::stdout(), "Report: {}", page.display())?;

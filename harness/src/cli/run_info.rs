@@ -5,12 +5,17 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use crate::calibrate::Grid;
 use crate::embree::Library;
 use crate::replay::Outcome;
-use crate::replay::gpu::Adapter;
+use crate::replay::gpu::{Adapter, Broken};
 use crate::report::{AdapterInfo, Difference, PlanLine, RunInfo, SceneReport};
 use crate::text::shell_word;
 
 /// What was run, where and with what.
-pub fn run_info(adapters: &[Adapter], embree: Option<&Library>, seconds: f64) -> RunInfo {
+pub fn run_info(
+    adapters: &[Adapter],
+    broken: &[Broken],
+    embree: Option<&Library>,
+    seconds: f64,
+) -> RunInfo {
     let words: Vec<String> = std::env::args()
         .skip(1)
         .map(|w| shell_word(&w).into())
@@ -30,7 +35,11 @@ pub fn run_info(adapters: &[Adapter], embree: Option<&Library>, seconds: f64) ->
             ),
             ("cores".into(), cores.to_string()),
         ],
-        adapters: adapters.iter().map(adapter_info).collect(),
+        adapters: adapters
+            .iter()
+            .map(adapter_info)
+            .chain(broken.iter().map(broken_info))
+            .collect(),
     }
 }
 
@@ -53,6 +62,13 @@ fn adapter_info(adapter: &Adapter) -> AdapterInfo {
             ("sub-pixel grid".into(), grid),
             ("largest binding".into(), format!("{limit} MiB")),
         ],
+    }
+}
+
+fn broken_info(broken: &Broken) -> AdapterInfo {
+    AdapterInfo {
+        name: broken.name.clone(),
+        facts: vec![("cannot be used".into(), broken.reason())],
     }
 }
 

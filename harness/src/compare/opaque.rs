@@ -28,13 +28,13 @@ pub fn compare(spec: &Opaque, other: &Opaque, primitives: &Primitives) -> Judgem
     let other = other.key.iter().zip(&other.prim);
     for (pixel, ((key, prim), (seen_key, seen_prim))) in (0_u32..).zip(spec.zip(other)) {
         judgement.compared += 1;
-        let cause = match (key == seen_key, prim == seen_prim) {
-            (true, true) => continue,
-            (true, false) if *seen_prim != NOTHING => Cause::TieOrder,
-            _ => match key_at(primitives, *seen_prim, pixel) {
-                Some(must) if must != *seen_key => Cause::DepthKey,
-                _ => Cause::Coverage,
-            },
+        if (key, prim) == (seen_key, seen_prim) {
+            continue;
+        }
+        let cause = match key_at(primitives, *seen_prim, pixel) {
+            Some(must) if must != *seen_key => Cause::DepthKey,
+            Some(_) if key == seen_key => Cause::TieOrder,
+            _ => Cause::Coverage,
         };
         judgement.differs(cause, Some(pixel), || {
             let (seen, must) = (surface(*seen_key, *seen_prim), surface(*key, *prim));

@@ -162,3 +162,19 @@ fn skips_are_counted_by_reason() {
     ];
     assert_eq!(skips(&rows), [("no adapter", 2), ("no Embree", 1)]);
 }
+
+#[test]
+fn only_the_name_of_a_path_is_one() {
+    for (label, adapter, path) in [
+        ("gpu@x/compute", "x", Some("compute")),
+        (
+            "gpu@x/y/compute --no-skip",
+            "x/y",
+            Some("compute --no-skip"),
+        ),
+        ("gpu@x", "x", None),
+        ("gpu@x/y", "x/y", None),
+    ] {
+        assert_eq!(leg_parts(label), ("gpu", Some(adapter), path), "{label}");
+    }
+}

@@ -1,6 +1,6 @@
 //! Generators of flat things: faces as written, stacks, fans, grids.
 
-use super::{Order, Random, Shape};
+use super::{Order, Random, Shape, check_radius};
 use crate::scene::value::Point;
 
 /// The polygons as written.
@@ -62,6 +62,7 @@ pub(super) fn fan(spokes: u32, radius: f64, hub: f64) -> Result<Shape, String> {
             "spokes = {spokes} does not close a circle; 3 or more do"
         ));
     }
+    check_radius("radius", radius)?;
     let mut shape = Shape::with(u128::from(spokes) + 1, spokes.into())?;
     let centre = shape.vertex([0.0, 0.0, hub]);
     for spoke in 0..spokes {

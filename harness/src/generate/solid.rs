@@ -1,7 +1,7 @@
 //! Generators of closed surfaces.
 
-use super::Shape;
 use super::flat::circle;
+use super::{Shape, check_radius};
 
 /// A sphere, poles on the y axis.
 pub(super) fn sphere(radius: f64, [down, around]: [u32; 2]) -> Result<Shape, String> {
@@ -10,6 +10,7 @@ pub(super) fn sphere(radius: f64, [down, around]: [u32; 2]) -> Result<Shape, Str
             "segments = [{down}, {around}] must be at least [2, 3]"
         ));
     }
+    check_radius("radius", radius)?;
     let (d, a) = (u128::from(down), u128::from(around));
     let mut shape = Shape::with((d - 1) * a + 2, 2 * a * (d - 1))?;
     let north = shape.vertex([0.0, radius, 0.0]);
@@ -49,6 +50,8 @@ pub(super) fn torus([ring, tube]: [f64; 2], [around, along]: [u32; 2]) -> Result
             "segments = [{around}, {along}] must be at least [3, 3]"
         ));
     }
+    check_radius("radius of the ring", ring)?;
+    check_radius("radius of the tube", tube)?;
     let vertices = u128::from(around) * u128::from(along);
     let mut shape = Shape::with(vertices, 2 * vertices)?;
     for i in 0..around {

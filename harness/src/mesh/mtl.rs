@@ -1,11 +1,11 @@
 //! MTL material libraries through tobj: `Kd`, `d` and `Tr`; nothing else matters
-//! here, and what other statements say is not looked at.
+//! here, and what other statements say is not looked at, as long as it is text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 
-use super::text::{name, number, quote, statements, words};
+use super::text::{check_text, name, number, quote, statements, words};
 use super::{Intake, MATERIALS_MAX};
 use crate::error::InputError;
 
@@ -102,6 +102,7 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Defined, InputError> {
     let mut clean = String::new();
     for s in statements(bytes) {
         let error = |message: String| InputError::at(path, s.line, message);
+        check_text(&s.text, "a material library").map_err(error)?;
         let mut values = words(&s.text);
         let keyword = values.next().unwrap_or_default();
         if !matches!(keyword, b"newmtl" | b"Kd" | b"d" | b"Tr") {

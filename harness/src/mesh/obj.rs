@@ -14,9 +14,10 @@ mod rewritten;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::text::{Statement, name, number, quote, statements, words};
+use super::text::{Statement, check_text, name, number, quote, statements, words};
 use super::{Intake, Mesh, Notes, too_large};
 use crate::error::InputError;
+use crate::text::plural;
 use face::{Counts, Faces};
 use material::Materials;
 use rewritten::Rewritten;
@@ -99,10 +100,7 @@ impl<'a, 'i> Reader<'a, 'i> {
         let text = &*s.text;
         let path = self.path;
         let error = |message: String| InputError::at(path, s.line, message);
-        if let Some(byte) = text.iter().find(|b| b.is_ascii_control() && !is_blank(**b)) {
-            let message = format!("byte {byte:#04x} is not text; an OBJ file is expected");
-            return Err(error(message));
-        }
+        check_text(text, "an OBJ file").map_err(error)?;
         let Some(keyword) = words(text).next() else {
             return Ok(());
         };
@@ -211,11 +209,11 @@ impl<'a, 'i> Reader<'a, 'i> {
         }
         if let Some((line, word)) = &self.first_unknown {
             let n = self.unknown;
-            let warning =
-                format!("{n} unknown statements ignored, the first on line {line}: {word}");
+            let what = plural(n, "unknown statement");
+            let warning = format!("{what} ignored, the first on line {line}: {word}");
             self.notes.warnings.push(warning);
         }
-        let (material, materials) = self.materials.finish(&mut self.notes.warnings);
+        let (material, materials) = self.materials.finish();
         if material.len() != triangles.len() {
             let (got, expected) = (triangles.len(), material.len());
             let message = format!("tobj makes {got} triangles of {expected}");
@@ -241,9 +239,4 @@ impl<'a, 'i> Reader<'a, 'i> {
         }
         InputError::new(self.path, message)
     }
-}
-
-fn is_blank(byte: u8) -> bool {
-    // Vertical tab is blank to many a reader, if not to Rust.
-    byte.is_ascii_whitespace() || byte == 0x0b
 }

@@ -110,6 +110,18 @@ fn without_comment(line: &[u8]) -> &[u8] {
     }
 }
 
+/// Refuses bytes that no text holds, where `expected` is.
+pub(super) fn check_text(text: &[u8], expected: &str) -> Result<(), String> {
+    // Vertical tab is blank to many a reader, if not to Rust.
+    let is_blank = |byte: u8| byte.is_ascii_whitespace() || byte == 0x0b;
+    match text.iter().find(|b| b.is_ascii_control() && !is_blank(**b)) {
+        None => Ok(()),
+        Some(byte) => Err(format!(
+            "byte {byte:#04x} is not text; {expected} is expected"
+        )),
+    }
+}
+
 /// The words of a statement.
 pub(super) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace)

@@ -17,7 +17,7 @@ use crate::plan::Plan;
 use crate::replay::gpu::{Adapter, From, GpuLeg};
 use crate::replay::rows::Rows;
 use crate::replay::spec::SpecRun;
-use crate::replay::vertex;
+use crate::replay::vertex::VertexLeg;
 use crate::row::{Row, Verdict};
 use crate::scene::value::Capacity;
 use crate::scene::{Loaded, load_entry};
@@ -216,8 +216,15 @@ impl Ground {
         let spec = &self.specs[&adapter.bits(path)];
         let mut rows = Rows::new(name, family);
         if vertex {
-            let budget = Some(file.budget.vertex.0);
-            vertex::run(scene, spec, adapter, path, budget, Some(&mut rows))?;
+            let leg = VertexLeg {
+                adapter,
+                path,
+                scene,
+                spec,
+                from: From::default(),
+                budget: Some(file.budget.vertex.0),
+            };
+            leg.run(Some(&mut rows))?;
             return Ok(rows.rows);
         }
         let leg = GpuLeg {

@@ -40,6 +40,8 @@ pub struct Cell {
     pub causes: BTreeMap<Cause, u64>,
     /// Items that differ without a cause.
     pub unexplained: u64,
+    /// Stages whose rows diverge.
+    pub stages: BTreeSet<String>,
     /// The first difference, or why it was not run.
     pub note: String,
 }
@@ -104,6 +106,7 @@ impl Cell {
             outcome: Outcome::NotRun,
             causes: BTreeMap::new(),
             unexplained: 0,
+            stages: BTreeSet::new(),
             note,
         }
     }
@@ -116,6 +119,7 @@ impl Cell {
         let mut cell = Self::blank(mutant, leg, String::new());
         for row in rows.iter().filter(|r| r.verdict() == Verdict::Diverge) {
             cell.unexplained += row.unexplained;
+            cell.stages.insert(row.stage.clone());
             for (cause, count) in &row.causes {
                 *cell.causes.entry(*cause).or_default() += count;
             }
@@ -170,6 +174,10 @@ impl Mutant {
                 && (cell.unexplained > 0 || !cell.causes.keys().eq([&cause]))
             {
                 wrong.push(format!("{leg}: not exactly {}: {found}", cause.name()));
+            } else if let Some(stage) = &self.stage
+                && !cell.stages.iter().eq([stage])
+            {
+                wrong.push(format!("{leg}: not in {stage} alone: {:?}", cell.stages));
             } else if self.expected().is_some_and(|e| e != *outcome) {
                 wrong.push(format!("{leg}: killed by {}: {found}", outcome.word()));
             }

@@ -32,6 +32,8 @@ pub struct Mutant {
     pub scene: String,
     /// The one cause that every leg must report, and nothing else: a canary.
     pub cause: Option<Cause>,
+    /// The stage that alone must diverge, where that is stated.
+    pub stage: Option<String>,
     /// How every leg must kill it, where no cause says so, and drivers cannot differ.
     by: Option<Outcome>,
     /// Whether a driver may hide it; then one leg must kill it, otherwise all.

@@ -1,11 +1,14 @@
 //! Adapters, opened and calibrated.
 
+use std::collections::BTreeMap;
+
 use triptych_gpu::context::{Gpu, adapters, short_name};
 use triptych_gpu::error::GpuError;
-use triptych_gpu::kernel::Kernels;
+use triptych_gpu::kernel::{Foreign, Kernels};
 use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::Sources;
 
+use super::broken::{Broken, each};
 use crate::calibrate::{Grid, calibrate};
 
 /// A device, its kernels, and its driver's sub-pixel grid.
@@ -18,59 +21,80 @@ pub struct Adapter {
     pub native: Option<Kernels>,
     /// What calibration found.
     pub grid: Grid,
+    /// The user's kernels, which run in place of ours.
+    pub foreign: Vec<Foreign>,
+}
+
+/// The adapters that a run is about.
+#[derive(Default)]
+pub struct Adapters {
+    /// Opened and calibrated, in order of name.
+    pub open: Vec<Adapter>,
+    /// Those that are there and of no use, in order of name.
+    pub broken: Vec<Broken>,
+}
+
+impl Adapters {
+    /// Finds, opens and calibrates the adapters whose name contains one of `wanted`
+    /// (all, if that is empty). One that fails does not keep the others from a run.
+    ///
+    /// Adapters of the GL back end are taken only if asked for: naga's GLSL has no
+    /// sample masks.
+    pub fn open(wanted: &[String]) -> Self {
+        let asked = !wanted.is_empty();
+        let (open, broken) = each(find(wanted), asked, |name, adapter| {
+            Adapter::open(adapter, name)
+        });
+        Self { open, broken }
+    }
+}
+
+/// The adapters whose name contains one of `wanted`, each under a name of its own.
+fn find(wanted: &[String]) -> Vec<(String, wgpu::Adapter)> {
+    let wanted: Vec<String> = wanted.iter().map(|w| w.to_lowercase()).collect();
+    let backends = if wanted.iter().any(|w| w.ends_with("gl")) {
+        wgpu::Backends::all()
+    } else {
+        wgpu::Backends::all() - wgpu::Backends::GL
+    };
+    let mut found: Vec<_> = adapters(backends)
+        .into_iter()
+        .map(|a| (short_name(&a.get_info()), a))
+        .collect();
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    // A software driver may be listed twice; two boards of one kind are two.
+    found.dedup_by(|a, b| {
+        let (a, b) = (a.1.get_info(), b.1.get_info());
+        a.device_type == wgpu::DeviceType::Cpu && a == b
+    });
+    let asked = |name: &str| wanted.iter().any(|w| name.to_lowercase().contains(w));
+    let mut found = numbered(found);
+    found.retain(|(name, _)| wanted.is_empty() || asked(name));
+    found
+}
+
+/// Tells what is called the same apart: `x`, `x#2`, `x#3`. The names depend neither on
+/// which of them are wanted nor on which of them open.
+fn numbered<F>(found: Vec<(String, F)>) -> Vec<(String, F)> {
+    let mut seen = BTreeMap::<String, u32>::new();
+    let number = |(name, found): (String, F)| {
+        let alike = seen.entry(name.clone()).or_default();
+        *alike += 1;
+        match *alike {
+            1 => (name, found),
+            n => (format!("{name}#{n}"), found),
+        }
+    };
+    found.into_iter().map(number).collect()
 }
 
 impl Adapter {
-    /// Opens and calibrates the adapters whose name contains one of `wanted` (all,
-    /// if that is empty), in order of name. Adapters of the GL back end are taken
-    /// only if asked for: naga's GLSL has no sample masks.
-    ///
-    /// # Errors
-    /// The first adapter that cannot be opened.
-    pub fn open_all(wanted: &[String]) -> Result<Vec<Self>, GpuError> {
-        let asked = |name: &str| {
-            wanted
-                .iter()
-                .any(|w| name.to_lowercase().contains(&w.to_lowercase()))
-        };
-        let backends = if wanted.iter().any(|w| w.to_lowercase().ends_with("gl")) {
-            wgpu::Backends::all()
-        } else {
-            wgpu::Backends::all() - wgpu::Backends::GL
-        };
-        let mut found: Vec<_> = adapters(backends)
-            .into_iter()
-            .map(|a| (short_name(&a.get_info()), a))
-            .filter(|(name, _)| wanted.is_empty() || asked(name))
-            .collect();
-        found.sort_by(|a, b| a.0.cmp(&b.0));
-        // A software driver may be listed twice; two boards of one kind are two.
-        found.dedup_by(|a, b| {
-            let (a, b) = (a.1.get_info(), b.1.get_info());
-            a.device_type == wgpu::DeviceType::Cpu && a == b
-        });
-        let mut adapters: Vec<Self> = Vec::with_capacity(found.len());
-        for (name, adapter) in &found {
-            let mut adapter = Self::open(adapter)?;
-            let alike = found
-                .iter()
-                .take(adapters.len())
-                .filter(|(n, _)| n == name)
-                .count();
-            if alike > 0 {
-                adapter.gpu.name = format!("{name}#{}", alike + 1);
-            }
-            adapters.push(adapter);
-        }
-        Ok(adapters)
-    }
-
-    /// Opens and calibrates one adapter.
+    /// Opens and calibrates one adapter under this name.
     ///
     /// # Errors
     /// Whatever the device reports.
-    pub fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let gpu = Gpu::open(adapter)?;
+    pub fn open(adapter: &wgpu::Adapter, name: &str) -> Result<Self, GpuError> {
+        let gpu = Gpu::open_as(adapter, name)?;
         let kernels = Kernels::new(Sources::shipped(false));
         let native = gpu
             .has_int64()
@@ -81,7 +105,20 @@ impl Adapter {
             kernels,
             native,
             grid,
+            foreign: Vec::new(),
         })
+    }
+
+    /// Runs a user's kernels from now on, in place of ours of the same stages.
+    /// Calibration was done with ours.
+    pub fn use_foreign(&mut self, foreign: &[Foreign]) {
+        if foreign.is_empty() {
+            return;
+        }
+        let kernels = |native| Kernels::with_foreign(Sources::shipped(native), foreign);
+        self.kernels = kernels(false);
+        self.native = self.native.take().map(|_| kernels(true));
+        self.foreign = foreign.to_vec();
     }
 
     /// The grid on which a path works: compute kernels take any.
@@ -90,5 +127,17 @@ impl Adapter {
             Path::Compute | Path::Native => triptych_spec::vertex::SUBPIXEL_BITS,
             Path::Fragment => self.grid.bits(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adapters_of_one_name_are_told_apart() {
+        let found = ["x", "y", "x", "x"].map(|name| (name.to_owned(), ()));
+        let names: Vec<String> = numbered(found.into()).into_iter().map(|f| f.0).collect();
+        assert_eq!(names, ["x", "y", "x#2", "x#3"]);
     }
 }

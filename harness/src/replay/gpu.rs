@@ -1,5 +1,6 @@
 //! A GPU leg: one adapter, one path, every stage from equal inputs.
 
+mod from;
 mod judge;
 mod lists;
 
@@ -13,7 +14,8 @@ use triptych_gpu::raster::{self, Path, Rasterizer};
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::scene::Scene;
 
-pub use super::adapter::Adapter;
+pub use super::adapter::{Adapter, Adapters};
+pub use super::broken::Broken;
 use super::rows::Rows;
 use super::spec::SpecRun;
 use crate::calibrate::Grid;
@@ -23,21 +25,8 @@ use crate::compare::{self, compare};
 use crate::observe::{self, Observed};
 use crate::plan::Plan;
 use crate::row::Class;
+pub use from::From;
 use lists::{join, relink};
-
-/// From which stage on the GPU's own results are used; before it, the spec's.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum From {
-    /// The GPU's own vertices.
-    Transform,
-    /// The spec's triangles.
-    #[default]
-    Cover,
-    /// The spec's unsorted lists.
-    Sort,
-    /// The spec's sorted lists.
-    Resolve,
-}
 
 /// One GPU leg of one scene.
 pub struct GpuLeg<'a> {
@@ -104,17 +93,13 @@ impl GpuLeg<'_> {
     /// Whatever the device reports.
     pub fn abuffer(&self, rasterizer: &Rasterizer<'_>) -> Result<GpuSeen, GpuError> {
         let spec = &self.spec.value;
-        let given = match self.from {
-            From::Transform | From::Cover => None,
-            From::Sort => Some((&spec.lists, false)),
-            From::Resolve => Some((&spec.lists, true)),
-        };
-        let relinked = given.filter(|g| g.1).map(|_| relink(spec));
+        let relinked = (self.from == From::Resolve).then(|| relink(spec));
+        let built = (self.from == From::Sort).then_some(&spec.lists);
         let options = abuffer::Options {
-            given: given.map(|(lists, sorted)| Given {
+            given: (self.from >= From::Build).then_some(Given {
                 opaque: &spec.opaque,
-                lists: relinked.as_ref().unwrap_or(lists),
-                sorted,
+                lists: relinked.as_ref().or(built),
+                sorted: relinked.is_some(),
             }),
             capacity: self.capacity,
             opaque: self.plan.opaque,
@@ -154,7 +139,8 @@ impl GpuLeg<'_> {
 
     fn cover(&self, rasterizer: &Rasterizer<'_>, rows: &mut Rows) -> Result<(), GpuError> {
         let needed = self.by_band() && self.from <= From::Cover;
-        if let Some(reason) = self.plan.skipped("cover").filter(|_| !needed) {
+        let reason = self.reason_not_run("cover", From::Cover);
+        if let Some(reason) = reason.filter(|_| !needed) {
             rows.skip(
                 "cover",
                 &self.spec.label,

@@ -5,10 +5,11 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
 
-use super::gpu::{Adapter, From, GpuLeg};
+use super::gpu::{Adapter, Broken, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
-use super::{pictures, skips, vertex};
+use super::vertex::{self, VertexLeg};
+use super::{end_to_end, pictures, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -18,7 +19,10 @@ use crate::scene::value::Capacity;
 impl Run<'_> {
     /// Every adapter and path; legs that share a sub-pixel grid follow each other.
     pub(super) fn gpu(&mut self) -> Result<(), Stop> {
-        if self.adapters.is_empty() {
+        for broken in &self.options.broken {
+            self.broken(broken);
+        }
+        if self.adapters.is_empty() && self.options.broken.is_empty() {
             let reason = "no adapter; `triptych doctor` says what is missing".to_owned();
             self.rows.skip("all", "spec", "gpu", Class::Exact, reason);
             return Ok(());
@@ -54,10 +58,40 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// An adapter that was asked for is a leg that failed; another is skipped.
+    fn broken(&mut self, broken: &Broken) {
+        let label = format!("gpu@{}", broken.name);
+        let reason = broken.to_string();
+        if broken.asked {
+            let lost = matches!(broken.error, GpuError::Lost { .. });
+            let cause = lost.then_some(Cause::DeviceLost);
+            self.rows.fail("leg", "spec", &label, cause, reason);
+        } else {
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+        }
+    }
+
     fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         if path == Path::Native && adapter.native.is_none() {
             let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-            let reason = "no 64-bit integers: compute takes its place".to_owned();
+            let stands_in = self.options.paths.contains(&Path::Compute);
+            let reason = match stands_in {
+                true => "no 64-bit integers: compute takes its place",
+                false => "no 64-bit integers",
+            };
+            self.rows
+                .skip("leg", "spec", &label, Class::Exact, reason.to_owned());
+            return Ok(());
+        }
+        let fragment = path == Path::Fragment;
+        if let Some(foreign) = adapter.foreign.iter().find(|f| !f.serves(fragment)) {
+            let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+            let rasteriser = if fragment { "the hardware's" } else { "our" };
+            let stage = foreign.stage.name;
+            let reason = format!(
+                "{} has no kernel of stage {stage} for {rasteriser} rasteriser",
+                foreign.file
+            );
             self.rows.skip("leg", "spec", &label, Class::Exact, reason);
             return Ok(());
         }
@@ -105,7 +139,7 @@ impl Run<'_> {
     ) -> Result<std::io::Result<()>, GpuError> {
         let (scene, plan) = (&self.loaded.scene, self.plan.clone());
         let moved = self.moved(spec, adapter, path)?;
-        let from_own = self.options.from == From::Transform;
+        let from_own = self.options.from < From::Cover;
         let leg = GpuLeg {
             adapter,
             path,
@@ -123,7 +157,7 @@ impl Run<'_> {
                 from: From::Cover,
                 ..leg
             };
-            vertex::end_to_end(&leg, spec, &mut self.rows)?;
+            end_to_end::run(&leg, spec, &mut self.rows)?;
         }
         if self.options.skip && self.measures_skips(adapter, path) {
             self.saved_ms = skips::run(&leg, &seen, &mut self.rows)?;
@@ -148,7 +182,16 @@ impl Run<'_> {
             Err(lost @ GpuError::Lost { .. }) => return Err(lost),
             Err(error) => {
                 let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-                self.refused("vertex", &label, &spec.value, &error);
+                let failed = vertex::stage_of(&error, self.options.from);
+                for stage in vertex::STAGES {
+                    if stage == failed {
+                        self.refused(stage, &label, &spec.value, &error);
+                    } else {
+                        let reason = format!("the vertex stages did not finish, see {failed}");
+                        let rows = &mut self.rows;
+                        rows.skip(stage, "spec", &label, Class::Interval, reason);
+                    }
+                }
                 None
             }
             Ok(own) => own,
@@ -167,8 +210,8 @@ impl Run<'_> {
         }
     }
 
-    /// The GPU's own vertex stage, compared with the spec's. It is the same for both
-    /// paths, so it is judged on the compute path, which takes the finest grid; its
+    /// The GPU's own vertex stages, compared with the spec's. They are the same for all
+    /// paths, so they are judged on the compute path, which takes the finest grid; the
     /// triangles are given back where they are wanted and differ.
     fn vertices(
         &mut self,
@@ -178,18 +221,20 @@ impl Run<'_> {
     ) -> Result<Option<triptych_spec::vertex::Primitives>, GpuError> {
         let only_path = self.options.paths.len() == 1;
         let judged = path == Path::Compute || only_path;
-        if !judged && self.options.from != From::Transform {
+        let from = self.options.from;
+        if !judged && from >= From::Cover {
             return Ok(None);
         }
-        vertex::run(
-            &self.loaded.scene,
-            spec,
+        let leg = VertexLeg {
             adapter,
             path,
+            scene: &self.loaded.scene,
+            spec,
+            from,
             // A bare mesh states no budgets.
-            (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
-            judged.then_some(&mut self.rows),
-        )
+            budget: (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
+        };
+        leg.run(judged.then_some(&mut self.rows))
     }
 
     /// Skipping is measured once a scene, on the last adapter's compute path.

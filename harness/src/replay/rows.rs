@@ -46,9 +46,14 @@ impl Rows {
         if let (true, Some(first)) = (note.is_empty(), judgement.described.first()) {
             note.clone_from(first);
         }
+        // What was counted and not judged is no comparison.
+        let compared = match judgement.skipped {
+            Some(_) => 0,
+            None => judgement.compared,
+        };
         self.rows.push(Row {
             unit: judgement.unit.into(),
-            compared: judgement.compared,
+            compared,
             differ: judgement.differ(),
             unexplained: judgement.unexplained,
             admitted: judgement.admitted,

@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
-use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
+use triptych_spec::vertex::{self, SUBPIXEL_BITS};
 
 use super::facts::Facts;
 use super::gpu::Adapter;
 use super::rows::Rows;
-use super::spec::{SpecRun, timed};
+use super::spec::{SpecRun, Times, timed};
 use super::{Options, Outcome, embree, pictures};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
@@ -58,7 +58,7 @@ impl<'a> Run<'a> {
             pictures: Vec::new(),
             saved_ms: None,
             facts: None,
-            remarks: Vec::new(),
+            remarks: loaded.stats.remarks(),
         }
     }
 
@@ -159,9 +159,16 @@ impl<'a> Run<'a> {
         }
         self.spec = None;
         let scene = &self.loaded.scene;
-        let (primitives, vertex) = timed(|| primitives(scene, bits));
+        let (positions, transform) = timed(|| vertex::transform(scene));
+        let (polygons, clip) = timed(|| vertex::clip(scene, &positions));
+        let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
         let mut run = SpecRun::new(scene, primitives, &self.plan).map_err(Stop::Input)?;
-        run.times.vertex = vertex;
+        run.times = Times {
+            transform,
+            clip,
+            snap,
+            ..run.times
+        };
         let spec = Rc::new(Observed::new("spec", run));
         self.spec = Some(spec.clone());
         Ok(spec)

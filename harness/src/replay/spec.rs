@@ -37,8 +37,12 @@ pub struct SpecRun {
 /// Time of each stage.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// Stages transform, clip and snap.
-    pub vertex: Duration,
+    /// Stage transform.
+    pub transform: Duration,
+    /// Stage clip.
+    pub clip: Duration,
+    /// Stage snap.
+    pub snap: Duration,
     /// Stage cover.
     pub cover: Duration,
     /// Stage opaque.

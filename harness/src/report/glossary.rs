@@ -129,7 +129,10 @@ fn class_meaning(class: Class) -> &'static str {
 
 fn cause_meaning(cause: Cause) -> &'static str {
     match cause {
-        Cause::Vertex => "A corner lies outside the bound of the vertex stage.",
+        Cause::Vertex => {
+            "A position or a corner lies outside the bound of transform, clip or snap, or \
+             neighbours do not meet."
+        }
         Cause::Coverage => "A triangle covers a sample that it must not, or misses one it must.",
         Cause::Duplicate => "A fragment is in a list more than once.",
         Cause::LostNode => "An address was handed out, but no list leads to its node.",

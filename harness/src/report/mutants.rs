@@ -115,6 +115,7 @@ pub(super) mod tests {
             outcome,
             causes: [(Cause::Cycle, 12)].into(),
             unexplained: 0,
+            stages: [].into(),
             note: "\"<script>".into(),
         };
         let leg = "gpu@llvmpipe/compute";

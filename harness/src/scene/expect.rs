@@ -1,12 +1,15 @@
 //! Closed-form answers of analytic scenes, held against the spec.
 
+use std::ops::Range;
+
 use serde::Deserialize;
+use toml::Spanned;
 use triptych_spec::abuffer::{NOTHING, Opaque, Sorted};
 use triptych_spec::raster::cover;
-use triptych_spec::scene::Scene;
+use triptych_spec::scene::{Scene, Size};
 use triptych_spec::vertex::Primitives;
 
-use super::value::at_most;
+use super::value::{at_most, exactly};
 
 /// Most rectangles and lists of a scene: a rectangle may have all of its pixels.
 const STATED_MAX: usize = 1 << 10;
@@ -28,10 +31,10 @@ pub struct Expect {
     pub covered: Option<u64>,
     /// How many triangles cover each pixel of a rectangle.
     #[serde(default, deserialize_with = "at_most::<STATED_MAX, _, _>")]
-    pub cover: Vec<Cover>,
+    pub cover: Vec<Spanned<Cover>>,
     /// Single pixels' lists.
     #[serde(default, deserialize_with = "at_most::<STATED_MAX, _, _>")]
-    pub lists: Vec<List>,
+    pub lists: Vec<Spanned<List>>,
 }
 
 /// Each pixel of a rectangle is covered by exactly `times` triangles.
@@ -39,8 +42,10 @@ pub struct Expect {
 #[serde(deny_unknown_fields)]
 pub struct Cover {
     /// First column and the one after the last.
+    #[serde(deserialize_with = "exactly")]
     pub x: [u32; 2],
     /// First row and the one after the last.
+    #[serde(deserialize_with = "exactly")]
     pub y: [u32; 2],
     /// Number of triangles.
     pub times: u32,
@@ -51,6 +56,7 @@ pub struct Cover {
 #[serde(deny_unknown_fields)]
 pub struct List {
     /// Column and row.
+    #[serde(deserialize_with = "exactly")]
     pub at: [u32; 2],
     /// Source triangles' numbers, nearest first.
     pub prims: Vec<u32>,
@@ -73,10 +79,39 @@ impl Expect {
         let numbers = numbers.iter().filter(|n| n.is_some()).count();
         (numbers + cover.len() + lists.len()) as u64
     }
+
+    /// Refuses a rectangle that is empty or leaves the picture and a pixel outside
+    /// it: nothing that a leg does could make such a statement true.
+    pub(super) fn check_places(&self, size: Size) -> Result<(), (Range<usize>, String)> {
+        let Size { width, height } = size;
+        for cover in &self.cover {
+            let Cover { x, y, .. } = *cover.get_ref();
+            for (axis, [first, end], side) in [("x", x, width), ("y", y, height)] {
+                if first >= end || end > side {
+                    let message = format!(
+                        "expect.cover: {axis} = [{first}, {end}] is no range within [0, {side}]"
+                    );
+                    return Err((cover.span(), message));
+                }
+            }
+        }
+        for list in &self.lists {
+            let [x, y] = list.get_ref().at;
+            if x >= width || y >= height {
+                let message = format!(
+                    "expect.lists: at = [{x}, {y}] is outside the picture, which ends at [{}, {}]",
+                    width - 1,
+                    height - 1
+                );
+                return Err((list.span(), message));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What of `expect` the spec's result contradicts, one line each; empty if
-/// nothing.
+/// nothing. Its places lie in the picture, as loading sees to.
 pub fn check(
     expect: &Expect,
     scene: &Scene,
@@ -104,9 +139,9 @@ pub fn check(
     if let Some(least) = expect.layers_min.filter(|least| longest < *least) {
         wrong.push(format!("layers_min: {longest}, expected {least} or more"));
     }
-    let cover = |c: &Cover| check_cover(c, scene, &counts);
+    let cover = |c: &Spanned<Cover>| check_cover(c.get_ref(), scene, &counts);
     wrong.extend(expect.cover.iter().filter_map(cover));
-    let list = |l: &List| check_list(l, scene, primitives, sorted);
+    let list = |l: &Spanned<List>| check_list(l.get_ref(), scene, primitives, sorted);
     wrong.extend(expect.lists.iter().filter_map(list));
     wrong
 }
@@ -120,11 +155,6 @@ fn coverage(primitives: &Primitives) -> Vec<u32> {
 
 fn check_cover(cover: &Cover, scene: &Scene, counts: &[u32]) -> Option<String> {
     let Cover { x, y, times } = *cover;
-    if x[0] >= x[1] || y[0] >= y[1] || x[1] > scene.size.width || y[1] > scene.size.height {
-        return Some(format!(
-            "cover: x {x:?}, y {y:?} is empty or leaves the picture"
-        ));
-    }
     let pixels = (y[0]..y[1]).flat_map(|row| (x[0]..x[1]).map(move |column| (column, row)));
     for (column, row) in pixels {
         let got = counts[(row * scene.size.width + column) as usize];
@@ -143,9 +173,6 @@ fn check_list(
     sorted: &Sorted,
 ) -> Option<String> {
     let [x, y] = list.at;
-    if x >= scene.size.width || y >= scene.size.height {
-        return Some(format!("lists: [{x}, {y}] is outside the picture"));
-    }
     let source = |prim: u32| scene.triangles[primitives.source[prim as usize] as usize].primitive;
     let fragments = sorted.list((y * scene.size.width + x) as usize);
     let got: Vec<u32> = fragments.iter().map(|f| source(f.prim)).collect();

@@ -241,8 +241,8 @@ pub struct Budget {
     /// Pairs of ray and triangle too close to an edge for Embree's vote.
     #[serde(default = "Budget::default_edge")]
     pub edge: Share,
-    /// Triangles that the vertex stage may decide either way, or on whose corners
-    /// WGSL promises nothing.
+    /// Triangles that stage clip may decide either way, or on whose corners WGSL
+    /// promises nothing in clip or snap; vertices on which it promises nothing in transform.
     #[serde(default = "Budget::default_vertex")]
     pub vertex: Share,
 }

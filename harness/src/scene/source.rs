@@ -200,16 +200,33 @@ impl Source {
             (.., Some(generator)) => format!("generate {}", generator.get_ref().name()),
             (None, None, None) => String::new(),
         };
+        let mut notes = mesh.notes.clone();
+        notes.warnings.extend(undefined(&mesh, entry));
         let stats = MeshStats {
             source,
             sha256,
             triangles: mesh.triangles.len() as u64,
             instances: entry.instances.len() as u64,
             degenerate: mesh.degenerate(),
-            notes: mesh.notes.clone(),
+            notes,
         };
         Self { mesh, stats }
     }
+}
+
+/// A remark about materials that neither libraries nor the scene define.
+fn undefined(mesh: &Mesh, entry: &MeshEntry) -> Option<String> {
+    // Row 0 is of faces that ask for no material.
+    let named = &mesh.materials[1..];
+    let is_undefined =
+        |n: &&mesh::Named| n.defined.is_none() && !entry.materials.contains_key(n.name.as_str());
+    let count = named.iter().filter(is_undefined).count();
+    (count > 0 && entry.material.is_none()).then(|| {
+        format!(
+            "{count} of {} materials not defined, so their faces take the default",
+            named.len()
+        )
+    })
 }
 
 /// Where a package's mesh lies, and the hash that its row pins.

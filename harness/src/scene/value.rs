@@ -5,7 +5,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::TARGET_MAX;
 
@@ -30,12 +30,12 @@ impl TryFrom<f64> for Number {
 
 /// Three finite numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(try_from = "[f64; 3]")]
+#[serde(try_from = "Exactly<f64, 3>")]
 pub struct Point(pub [f64; 3]);
 
-impl TryFrom<[f64; 3]> for Point {
+impl TryFrom<Exactly<f64, 3>> for Point {
     type Error = String;
-    fn try_from(v: [f64; 3]) -> Result<Self, String> {
+    fn try_from(Exactly(v): Exactly<f64, 3>) -> Result<Self, String> {
         match v.iter().find(|x| !x.is_finite()) {
             None => Ok(Self(v)),
             Some(x) => Err(format!("{x} is not a finite number")),
@@ -45,12 +45,12 @@ impl TryFrom<[f64; 3]> for Point {
 
 /// Three finite numbers that are not all zero.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "[f64; 3]")]
+#[serde(try_from = "Exactly<f64, 3>")]
 pub struct Direction(pub [f64; 3]);
 
-impl TryFrom<[f64; 3]> for Direction {
+impl TryFrom<Exactly<f64, 3>> for Direction {
     type Error = String;
-    fn try_from(v: [f64; 3]) -> Result<Self, String> {
+    fn try_from(v: Exactly<f64, 3>) -> Result<Self, String> {
         let Point(v) = Point::try_from(v)?;
         match v == [0.0; 3] {
             false => Ok(Self(v)),
@@ -61,12 +61,12 @@ impl TryFrom<[f64; 3]> for Direction {
 
 /// Linear red, green and blue, each from 0 to [`COLOUR_MAX`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(try_from = "[f64; 3]")]
+#[serde(try_from = "Exactly<f64, 3>")]
 pub struct Colour(pub [f64; 3]);
 
-impl TryFrom<[f64; 3]> for Colour {
+impl TryFrom<Exactly<f64, 3>> for Colour {
     type Error = String;
-    fn try_from(v: [f64; 3]) -> Result<Self, String> {
+    fn try_from(Exactly(v): Exactly<f64, 3>) -> Result<Self, String> {
         match v.iter().find(|x| !(0.0..=COLOUR_MAX).contains(*x)) {
             None => Ok(Self(v)),
             Some(x) => Err(format!("{x} is outside 0 to {COLOUR_MAX:e}")),
@@ -106,12 +106,12 @@ impl TryFrom<String> for Sentence {
 
 /// Width and height in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "[i64; 2]")]
+#[serde(try_from = "Exactly<i64, 2>")]
 pub struct ImageSize(pub Size);
 
-impl TryFrom<[i64; 2]> for ImageSize {
+impl TryFrom<Exactly<i64, 2>> for ImageSize {
     type Error = String;
-    fn try_from(v: [i64; 2]) -> Result<Self, String> {
+    fn try_from(Exactly(v): Exactly<i64, 2>) -> Result<Self, String> {
         let side = |v: i64| match u32::try_from(v) {
             Ok(side) if (1..=TARGET_MAX).contains(&side) => Ok(side),
             _ => Err(format!("{v} is outside 1 to {TARGET_MAX} pixels")),
@@ -178,11 +178,55 @@ impl TryFrom<toml::Value> for Scale {
     type Error = String;
     fn try_from(v: toml::Value) -> Result<Self, String> {
         let axes = match v {
-            toml::Value::Array(_) => v.clone().try_into::<[f64; 3]>().ok(),
-            _ => v.clone().try_into::<f64>().ok().map(|s| [s; 3]),
+            toml::Value::Array(_) => v.clone().try_into::<Exactly<f64, 3>>().ok(),
+            _ => v.clone().try_into::<f64>().ok().map(|s| Exactly([s; 3])),
         };
         let axes = axes.ok_or_else(|| format!("{v} is neither a number nor three"))?;
         Point::try_from(axes).map(|Point(s)| Self(s))
+    }
+}
+
+/// An array of `N` items, neither fewer nor more; serde's own ignores those beyond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exactly<T, const N: usize>(pub [T; N]);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N> {
+    fn deserialize<D: Deserializer<'de>>(list: D) -> Result<Self, D::Error> {
+        exactly(list).map(Self)
+    }
+}
+
+/// Reads what [`Exactly`] holds.
+pub fn exactly<'de, const N: usize, T, D>(list: D) -> Result<[T; N], D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    list.deserialize_seq(ExactlyVisitor::<N, T>(PhantomData))
+}
+
+struct ExactlyVisitor<const N: usize, T>(PhantomData<T>);
+
+impl<'de, const N: usize, T: Deserialize<'de>> Visitor<'de> for ExactlyVisitor<N, T> {
+    type Value = [T; N];
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "an array of length {N}")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<[T; N], A::Error> {
+        let mut items = Vec::with_capacity(N);
+        while items.len() < N
+            && let Some(item) = list.next_element()?
+        {
+            items.push(item);
+        }
+        let mut count = items.len();
+        while list.next_element::<IgnoredAny>()?.is_some() {
+            count += 1;
+        }
+        let items = <[T; N]>::try_from(items).ok().filter(|_| count == N);
+        items.ok_or_else(|| A::Error::invalid_length(count, &self))
     }
 }
 

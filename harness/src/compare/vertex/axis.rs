@@ -16,17 +16,55 @@ use triptych_spec::bound::Bounded;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{DEPTH_ONE, GUARD, Position, grid_position, guard_origin};
 
-use super::{Figures, Kind};
+use super::rule::{Outside, Rule};
+use super::{Figures, SLACK};
 
-/// The spec's numbers are `f64` and differ from the real ones that the bounds are
-/// about: by under 2^-53 where the bound has 2^-23 or more, operation by operation.
-const SLACK: f64 = 1.0 + 1.0 / (1 << 20) as f64;
-
-/// Holds polygons of one target against their bounds.
+/// Holds snapped polygons of one target against their bounds.
 pub struct Judge {
     bits: u32,
     /// The integers that an axis may have.
     ranges: [[i32; 2]; 3],
+}
+
+impl Rule for Judge {
+    type Corner = [i32; 3];
+
+    fn corner(&self, position: Position<Bounded>, observed: [i32; 3]) -> Result<Figures, Outside> {
+        let mut figures = Figures::default();
+        let grid = grid_position(position, self.bits);
+        for (axis, (number, observed)) in grid.into_iter().zip(observed).enumerate() {
+            let outside = Outside {
+                axis,
+                expected: number,
+                observed: f64::from(observed),
+            };
+            // An integer that the axis does not have is wrong whatever the bound.
+            let [low, high] = self.ranges[axis];
+            if !(low..=high).contains(&observed) {
+                return Err(outside);
+            }
+            if axis < 2 && observed != self.rounded(axis, number.value) {
+                figures.moved = 1;
+            }
+            let admits = |k| self.error(axis, number.value, k) <= number.bound * SLACK;
+            if number.bound.is_infinite() || (admits(low) && admits(high)) {
+                figures.unbounded = 1;
+                continue;
+            }
+            if !admits(observed) {
+                return Err(outside);
+            }
+            let error = self.error(axis, number.value, observed);
+            figures.error_over_bound = figures.error_over_bound.max(error / number.bound);
+            if axis == 2 {
+                figures.error_keys = figures.error_keys.max(error);
+            } else {
+                figures.error_subpixels = figures.error_subpixels.max(error);
+                figures.bound_subpixels = figures.bound_subpixels.max(number.bound);
+            }
+        }
+        Ok(figures)
+    }
 }
 
 impl Judge {
@@ -40,80 +78,6 @@ impl Judge {
             bits,
             ranges: [guard(size.width), guard(size.height), [0, DEPTH_ONE]],
         }
-    }
-
-    /// Whether an observed polygon conforms to an outcome.
-    ///
-    /// # Errors
-    /// The first difference.
-    pub fn polygon(
-        &self,
-        expected: &[Position<Bounded>],
-        observed: &[[i32; 3]],
-    ) -> Result<Figures, Kind> {
-        if expected.len() != observed.len() {
-            return Err(Kind::Count {
-                expected: expected.len(),
-                observed: observed.len(),
-            });
-        }
-        let mut figures = Figures::default();
-        for (corner, (position, observed)) in expected.iter().zip(observed).enumerate() {
-            let judged = self.corner(*position, *observed);
-            figures.merge(&judged.map_err(|(axis, number)| Kind::Corner {
-                corner,
-                axis,
-                value: number.value,
-                bound: number.bound,
-                observed: observed[axis],
-            })?);
-        }
-        Ok(figures)
-    }
-
-    /// The number of corners outside, of polygons with equally many.
-    pub fn outside(&self, expected: &[Position<Bounded>], observed: &[[i32; 3]]) -> usize {
-        let pairs = expected.iter().zip(observed);
-        pairs
-            .filter(|(e, o)| self.corner(**e, **o).is_err())
-            .count()
-    }
-
-    /// Fails with the first axis that is outside, and what was expected there.
-    fn corner(
-        &self,
-        position: Position<Bounded>,
-        observed: [i32; 3],
-    ) -> Result<Figures, (usize, Bounded)> {
-        let mut figures = Figures::default();
-        let grid = grid_position(position, self.bits);
-        for (axis, (number, observed)) in grid.into_iter().zip(observed).enumerate() {
-            // An integer that the axis does not have is wrong whatever the bound.
-            let [low, high] = self.ranges[axis];
-            if !(low..=high).contains(&observed) {
-                return Err((axis, number));
-            }
-            if axis < 2 && observed != self.rounded(axis, number.value) {
-                figures.moved = 1;
-            }
-            let admits = |k| self.error(axis, number.value, k) <= number.bound * SLACK;
-            if number.bound.is_infinite() || (admits(low) && admits(high)) {
-                figures.unbounded = 1;
-                continue;
-            }
-            if !admits(observed) {
-                return Err((axis, number));
-            }
-            let error = self.error(axis, number.value, observed);
-            figures.error_over_bound = figures.error_over_bound.max(error / number.bound);
-            if axis == 2 {
-                figures.error_keys = figures.error_keys.max(error);
-            } else {
-                figures.error_subpixels = figures.error_subpixels.max(error);
-                figures.bound_subpixels = figures.bound_subpixels.max(number.bound);
-            }
-        }
-        Ok(figures)
     }
 
     /// How far the nearest number that rounds to `observed`, one of the axis's

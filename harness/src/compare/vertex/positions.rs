@@ -60,7 +60,7 @@ pub struct Stray {
 
 /// Compares a device's positions, one for each of [`Scene::vertices`], with the
 /// spec's.
-pub fn compare_transform(scene: &Scene, observed: &[[f32; 4]]) -> TransformReport {
+pub fn compare_transform(scene: &Scene, observed: &[Position<f32>]) -> TransformReport {
     let expected: Vec<Position<Bounded>> = vertex::transform(scene);
     let mut report = TransformReport {
         vertices: expected.len() as u64,
@@ -94,19 +94,18 @@ pub fn compare_transform(scene: &Scene, observed: &[[f32; 4]]) -> TransformRepor
     report
 }
 
-/// A device's positions as the given numbers of the stages that follow, for
-/// [`super::compare_from`]. Subnormal numbers may be flushed when they are read; on
-/// what is not finite nothing is promised.
-pub fn exact_positions(observed: &[[f32; 4]]) -> Vec<Position<Bounded>> {
-    let number = |v: f32| Bounded {
+/// A device's number as the given one of the stage that follows: from equal inputs. A
+/// subnormal number may be flushed when it is read; on what is not finite nothing is
+/// promised.
+pub fn exact(observed: Position<f32>) -> Position<Bounded> {
+    observed.map(|v| Bounded {
         value: if v.is_finite() { f64::from(v) } else { 0.0 },
         bound: match v {
             _ if !v.is_finite() => f64::INFINITY,
             _ if v.is_subnormal() => TINY,
             _ => 0.0,
         },
-    };
-    observed.iter().map(|p| p.map(number)).collect()
+    })
 }
 
 /// Where nothing is promised, NaN and infinity conform as well.

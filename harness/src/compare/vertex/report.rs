@@ -7,11 +7,11 @@ use crate::row::Class;
 /// Differences that a report tells in full.
 pub const TOLD_MAX: usize = 8;
 
-/// What comparing the corners of a scene gave. Every difference has cause
+/// What comparing the corners of a scene gave, in stage `clip` or `snap`. Every difference has cause
 /// [`crate::cause::Cause::Vertex`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexReport {
-    /// Source triangles, visible or not.
+    /// Source triangles: all of them in `clip`, those with a polygon in `snap`.
     pub triangles: u64,
     /// Corners held against their bound, or missing, or too many.
     pub corners: u64,
@@ -81,14 +81,14 @@ pub enum Kind {
     Corner {
         /// Number of the corner within the polygon.
         corner: usize,
-        /// 0, 1, 2 for x, y (sub-pixels) and z (keys).
+        /// 0 to 3 for x, y, z, w; on the grid in sub-pixels and keys.
         axis: usize,
-        /// Before rounding.
+        /// What it should be; on the grid, before rounding.
         value: f64,
         /// Largest distance from it.
         bound: f64,
         /// As observed.
-        observed: i32,
+        observed: f64,
     },
     /// A corner of clipping is not where a triangle with the same edge has it.
     Crack {
@@ -107,6 +107,14 @@ pub enum Kind {
 }
 
 impl VertexReport {
+    /// Nothing can be compared, and why.
+    pub(super) fn malformed(message: String) -> Self {
+        Self {
+            malformed: Some(message),
+            ..Self::default()
+        }
+    }
+
     /// Whether something was compared and all of it agrees. Whether too much was
     /// admitted is the caller's budget.
     pub fn agrees(&self) -> bool {
@@ -154,6 +162,14 @@ impl VertexReport {
         self.figures.merge(figures);
         self.decisions += u64::from(decision);
         self.admitted += u64::from(decision || figures.unbounded > 0);
+    }
+
+    /// Triangles that do not meet a neighbour.
+    pub(super) fn add_cracks(&mut self, cracks: Vec<Difference>) {
+        for crack in cracks {
+            self.cracks += 1;
+            self.tell(crack);
+        }
     }
 
     pub(super) fn tell(&mut self, difference: Difference) {

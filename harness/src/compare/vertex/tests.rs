@@ -3,14 +3,21 @@
 mod canaries;
 mod laws;
 mod scenes;
+mod twice;
+mod whole;
 
 use triptych_gpu::context::{Gpu, adapters};
 use triptych_gpu::kernel::Kernels;
-use triptych_gpu::vertex::{VertexRun, run};
+use triptych_gpu::vertex::{Given, Times, VertexRun, run};
 use triptych_gpu::wgsl::Sources;
+use triptych_spec::vertex::{self, Plane, Primitives, clip_triangle};
 
+use super::clip::outcomes;
+use super::positions::exact;
 use super::*;
+use canaries::{DEFECTS, TRANSFORM, patched};
 use scenes::{BITS, last, random, through_planes};
+use whole::whole;
 
 /// Every Vulkan adapter; at least the two software drivers are set up.
 fn devices() -> Vec<Gpu> {
@@ -22,51 +29,112 @@ fn devices() -> Vec<Gpu> {
 }
 
 fn run_with(gpu: &Gpu, sources: Sources, scene: &Scene) -> VertexRun {
-    run(gpu, &Kernels::new(sources), scene, BITS).expect("the scene is small")
+    let kernels = Kernels::new(sources);
+    run(gpu, &kernels, scene, BITS, Given::Nothing, true).expect("the scene is small")
+}
+
+/// The spec as if it were a device: every stage starts from what the one before gave,
+/// rounded to `f32`.
+#[expect(clippy::cast_possible_truncation, reason = "as a device has it")]
+fn in_f32(scene: &Scene, bits: u32) -> VertexRun {
+    let rounded = |p: &Position<f64>| p.map(|v| v as f32);
+    let widened = |p: &Position<f32>| p.map(f64::from);
+    let positions: Vec<Position<f32>> = vertex::transform(scene).iter().map(rounded).collect();
+    let given: Vec<_> = positions.iter().map(widened).collect();
+    let Polygons { offsets, corners } = vertex::clip(scene, &given);
+    let corners: Vec<_> = corners.iter().map(rounded).collect();
+    let given = Polygons {
+        offsets: offsets.clone(),
+        corners: corners.iter().map(widened).collect(),
+    };
+    VertexRun {
+        positions,
+        polygons: Some(Polygons { offsets, corners }),
+        primitives: vertex::snap(scene, &given, bits),
+        times: Times::default(),
+    }
+}
+
+/// Each stage of a run, from equal inputs.
+struct Judged {
+    transform: TransformReport,
+    clip: VertexReport,
+    snap: VertexReport,
+}
+
+impl Judged {
+    fn new(scene: &Scene, run: &VertexRun) -> Self {
+        let VertexRun {
+            positions,
+            primitives,
+            ..
+        } = run;
+        let polygons = run.polygons.as_ref().expect("they were asked for");
+        Self {
+            transform: compare_transform(scene, positions),
+            clip: compare_clip(scene, positions, polygons),
+            snap: compare_snap(scene, primitives.bits, positions, polygons, primitives),
+        }
+    }
+
+    /// The stages that differ.
+    fn diverging(&self) -> Vec<&'static str> {
+        let differs = |report: &VertexReport| report.judgement().differ() > 0;
+        let stages = [
+            ("transform", self.transform.outside > 0),
+            ("clip", differs(&self.clip)),
+            ("snap", differs(&self.snap)),
+        ];
+        let diverging = stages.into_iter().filter(|(_, differs)| *differs);
+        diverging.map(|(stage, _)| stage).collect()
+    }
 }
 
 #[test]
 fn every_device_stays_inside_the_bound() {
     for gpu in devices() {
         let kernels = Kernels::new(Sources::shipped(false));
-        let mut total = VertexReport::default();
+        let mut worst = [0.0_f64; 3];
+        let mut totals = [VertexReport::default(), VertexReport::default()];
         for (name, scene) in random() {
             let at = format!("{} on {}", name, gpu.name);
-            let run = run(&gpu, &kernels, &scene, BITS).expect("the scene is small");
-            let transform = compare_transform(&scene, &run.positions);
+            let run = run(&gpu, &kernels, &scene, BITS, Given::Nothing, true);
+            let Judged {
+                transform,
+                clip,
+                snap,
+            } = Judged::new(&scene, &run.expect("the scene is small"));
             assert_eq!(transform.outside, 0, "{at}: {:?}", transform.told);
-            let whole = compare(&scene, BITS, &run.primitives);
-            assert!(
-                whole.agrees(),
-                "{at}: {:?} {:?}",
-                whole.malformed,
-                whole.told
-            );
-            let own = exact_positions(&run.positions);
-            let isolated = compare_from(&scene, &own, BITS, &run.primitives);
-            assert!(isolated.agrees(), "{at}, isolated: {:?}", isolated.told);
-            let worst = transform
-                .error_over_bound
-                .max(whole.figures.error_over_bound);
-            assert!(
-                worst > 1e-3,
-                "{at}: a bound a thousand times too wide: {worst}"
-            );
-            total.add(whole);
+            assert!(clip.agrees(), "{at}: {:?} {:?}", clip.malformed, clip.told);
+            assert!(snap.agrees(), "{at}: {:?} {:?}", snap.malformed, snap.told);
+            let figures = [
+                transform.error_over_bound,
+                clip.figures.error_over_bound,
+                snap.figures.error_over_bound,
+            ];
+            worst = [0, 1, 2].map(|i| worst[i].max(figures[i]));
+            totals[0].add(clip);
+            totals[1].add(snap);
         }
         assert!(
-            total.decisions < total.triangles / 50,
-            "mostly certain: {total}"
+            worst.iter().all(|w| *w > 0.05),
+            "a bound twenty times too wide, of transform, clip or snap: {worst:?}"
         );
-        assert!(
-            total.undecided < total.triangles / 50,
-            "mostly decided: {total}"
-        );
-        assert!(
-            total.figures.unbounded < total.corners / 50,
-            "mostly bounded: {total}"
-        );
-        println!("{}: {total}", gpu.name);
+        for total in totals {
+            assert!(
+                total.decisions < total.triangles / 50,
+                "mostly certain: {total}"
+            );
+            assert!(
+                total.undecided < total.triangles / 50,
+                "mostly decided: {total}"
+            );
+            assert!(
+                total.figures.unbounded < total.corners / 50,
+                "mostly bounded: {total}"
+            );
+            println!("{}: {total}", gpu.name);
+        }
     }
 }
 
@@ -74,8 +142,8 @@ fn every_device_stays_inside_the_bound() {
 fn a_triangle_on_the_planes_may_be_clipped_either_way() {
     let scene = through_planes();
     for gpu in devices() {
-        let mut run = run_with(&gpu, Sources::shipped(false), &scene);
-        let report = compare(&scene, BITS, &run.primitives);
+        let run = run_with(&gpu, Sources::shipped(false), &scene);
+        let report = Judged::new(&scene, &run).clip;
         assert!(report.agrees(), "{}: {:?}", gpu.name, report.told);
         assert!(
             report.decisions > 0 && report.admitted >= report.decisions,
@@ -84,65 +152,21 @@ fn a_triangle_on_the_planes_may_be_clipped_either_way() {
         // Whichever way: no corner of it is free.
         let decided = (0..scene.triangles.len()).filter(|&t| {
             let corners = scene.triangles[t].vertices;
-            let positions: Vec<Position<Bounded>> = vertex::transform(&scene);
-            let ways = outcomes(
-                &Plane::all(scene.size),
-                corners.map(|v| positions[v as usize]),
-            );
+            let corners = corners.map(|v| exact(run.positions[v as usize]));
+            let ways = outcomes(&Plane::all(scene.size), corners);
             ways.is_some_and(|w| w.len() > 1)
         });
-        let first = u32::try_from(decided.clone().next().expect("some")).expect("few");
-        let row = run
-            .primitives
-            .source
-            .iter()
-            .position(|&s| s == first)
-            .expect("visible");
-        let corner = run.primitives.prims[row][1] as usize;
-        run.primitives.snapped[corner][0] ^= 1 << 14;
-        let report = compare(&scene, BITS, &run.primitives);
+        let mut polygons = run.polygons.expect("they were asked for");
+        let mut visible = decided.filter(|t| !polygon(&polygons, *t).is_empty());
+        let first = visible.next().expect("some");
+        let corner = polygons.offsets[first] as usize + 1;
+        polygons.corners[corner][0] += 64.0;
+        let report = compare_clip(&scene, &run.positions, &polygons);
         assert_eq!(report.differing, 1, "a corner 64 pixels off: {report}");
         assert!(
             matches!(report.told[0].kind, Kind::NoOutcome { .. }),
             "{:?}",
             report.told
         );
-    }
-}
-
-#[test]
-fn twice_the_bound_is_outside() {
-    for (name, scene) in random() {
-        let spec = vertex::primitives(&scene, BITS);
-        let positions: Vec<Position<Bounded>> = vertex::transform(&scene);
-        let polygons = vertex::clip(&scene, &positions);
-        let own = compare(&scene, BITS, &spec);
-        for axis in 0..3 {
-            let mut worse = spec.clone();
-            let mut moved = 0;
-            for (snapped, corner) in worse.snapped.iter_mut().zip(&polygons.corners) {
-                let number = vertex::grid_position(*corner, BITS)[axis];
-                // Rounding takes up to one unit of the difference away, and z has a
-                // factor of 1 + 2^-31 to itself.
-                let by = (2.0 * number.bound + 2.0).ceil();
-                let target = f64::from(snapped[axis]) + by;
-                let low_enough = target < f64::from(last(axis, scene.size));
-                if number.value >= 0.0 && low_enough {
-                    #[expect(clippy::cast_possible_truncation, reason = "below an i32")]
-                    let target = target as i32;
-                    snapped[axis] = target;
-                    moved += 1;
-                }
-            }
-            let report = compare(&scene, BITS, &worse);
-            // A polygon that matches no outcome counts all its corners.
-            if own.admitted == 0 {
-                assert_eq!(report.outside, moved, "{name}, axis {axis}: {report}");
-            }
-            assert!(
-                moved > 0 && report.outside > 0,
-                "{name}, axis {axis}: nothing moved"
-            );
-        }
     }
 }

@@ -18,7 +18,7 @@ impl fmt::Display for Difference {
                 bound,
                 observed,
             } => {
-                let axis = ["x", "y", "z"][*axis];
+                let axis = ["x", "y", "z", "w"][*axis];
                 write!(
                     f,
                     "corner {corner}: {axis} is {observed}, not {value} within {bound:.3e}"
@@ -42,17 +42,18 @@ impl fmt::Display for Difference {
 impl fmt::Display for VertexReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let figures = &self.figures;
-        write!(
-            f,
-            "{} corners, {} moved, off by up to {:.3} of at most {:.3} sub-pixels and {:.0} keys \
-             ({:.2} of the bound)",
-            self.corners,
-            figures.moved,
-            figures.error_subpixels,
-            figures.bound_subpixels,
-            figures.error_keys,
-            figures.error_over_bound,
-        )?;
+        let worst = figures.error_over_bound;
+        write!(f, "{} corners, ", self.corners)?;
+        if figures.bound_subpixels > 0.0 {
+            write!(
+                f,
+                "{} moved, off by up to {:.3} of at most {:.3} sub-pixels and {:.0} keys \
+                 ({worst:.2} of the bound)",
+                figures.moved, figures.error_subpixels, figures.bound_subpixels, figures.error_keys,
+            )?;
+        } else {
+            write!(f, "off by up to {worst:.2} of the bound")?;
+        }
         let counts = [
             (self.decisions, "triangles with an uncertain branch"),
             (self.undecided, "triangles undecided"),

@@ -12,6 +12,7 @@ fn run() -> MutantRun {
         outcome,
         causes: [(Cause::SortOrder, 7)].into(),
         unexplained: 0,
+        stages: [].into(),
         note: String::new(),
     };
     let cells = vec![

@@ -39,17 +39,11 @@ impl Materials {
     }
 
     /// The material of each triangle, and the materials by number.
-    pub(super) fn finish(self, warnings: &mut Vec<String>) -> (Vec<u32>, Vec<Named>) {
+    pub(super) fn finish(self) -> (Vec<u32>, Vec<Named>) {
         let mut named = vec![Named::default(); self.used.len() + 1];
-        let mut undefined = 0;
         for (name, number) in self.used {
             let defined = self.library.find(&name);
-            undefined += u64::from(defined.is_none());
             named[number as usize] = Named { name, defined };
-        }
-        if undefined > 0 {
-            let used = named.len() - 1;
-            warnings.push(format!("{undefined} of {used} materials are not defined"));
         }
         (self.of_triangle, named)
     }

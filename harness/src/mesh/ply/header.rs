@@ -165,6 +165,13 @@ fn rewrite(path: &Path, bytes: &[u8]) -> Result<(String, usize, usize), InputErr
                 clean.push_str("comment\n");
                 continue;
             }
+            b"format" => {
+                let version = named.nth(1).unwrap_or_default();
+                if version != b"1.0" {
+                    let message = format!("version {} of PLY; only 1.0 is known", quote(version));
+                    return Err(InputError::at(path, number, message));
+                }
+            }
             b"element" => {
                 let name = named.next().unwrap_or_default();
                 if elements.contains(&name) {

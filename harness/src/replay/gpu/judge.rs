@@ -16,7 +16,7 @@ use crate::row::Class;
 
 impl GpuLeg<'_> {
     pub(super) fn judge_opaque(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
-        if let Some(reason) = self.reason_not_run("opaque", From::Cover) {
+        if let Some(reason) = self.reason_not_run("opaque", From::Opaque) {
             rows.skip(
                 "opaque",
                 &self.spec.label,
@@ -38,7 +38,7 @@ impl GpuLeg<'_> {
     }
 
     pub(super) fn judge_lists(&self, seen: &Observed<observe::Gpu, GpuSeen>, rows: &mut Rows) {
-        if let Some(reason) = self.reason_not_run("build", From::Cover) {
+        if let Some(reason) = self.reason_not_run("build", From::Build) {
             rows.skip(
                 "build",
                 &self.spec.label,
@@ -164,11 +164,11 @@ impl GpuLeg<'_> {
 
     /// Why a stage has nothing of its own to compare: the plan leaves it out, or the
     /// spec's result stands in for it.
-    fn reason_not_run(&self, stage: &str, first: From) -> Option<String> {
+    pub(super) fn reason_not_run(&self, stage: &str, first: From) -> Option<String> {
         let given = self.from > first;
         self.plan
             .skipped(stage)
-            .or(given.then(|| "the spec's result is used (--gpu-from)".into()))
+            .or(given.then(|| From::GIVEN.into()))
     }
 }
 

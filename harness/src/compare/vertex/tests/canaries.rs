@@ -4,7 +4,7 @@ use super::scenes::floor;
 use super::*;
 use crate::cause::Cause;
 
-fn patched(find: &str, replace: &str) -> Sources {
+pub fn patched(find: &str, replace: &str) -> Sources {
     let shipped = Sources::shipped(false);
     shipped
         .patched("vertex", find, replace)
@@ -12,7 +12,7 @@ fn patched(find: &str, replace: &str) -> Sources {
 }
 
 /// Defects in `clip` and `snap`, which positions do not show.
-const DEFECTS: [(&str, &str, &str); 9] = [
+pub const DEFECTS: [(&str, &str, &str); 9] = [
     (
         "rounding down",
         "round(pixels * f32(1u << frame.bits))",
@@ -60,69 +60,56 @@ const DEFECTS: [(&str, &str, &str); 9] = [
     ),
 ];
 
-#[test]
-fn defects_of_clip_and_snap_are_outside() {
-    for gpu in devices() {
-        for (what, find, replace) in DEFECTS {
-            let mut differing = 0;
-            for (_, scene) in random().iter().take(3) {
-                let run = run_with(&gpu, patched(find, replace), scene);
-                let transform = compare_transform(scene, &run.positions);
-                assert_eq!(transform.outside, 0, "{what}: transform is not to blame");
-                let own = exact_positions(&run.positions);
-                let report = compare_from(scene, &own, BITS, &run.primitives);
-                differing += report.differing;
-                let judgement = compare(scene, BITS, &run.primitives).judgement();
-                let causes: Vec<Cause> = judgement.causes.keys().copied().collect();
-                assert!(
-                    causes.iter().all(|&c| c == Cause::Vertex),
-                    "{what}: {causes:?}"
-                );
-            }
-            assert!(differing > 0, "{what} survives on {}", gpu.name);
-        }
+/// Defects in `transform`.
+pub const TRANSFORM: [(&str, &str, &str); 3] = [
+    (
+        "rows swapped",
+        "row_times(matrices[m], v)",
+        "row_times(matrices[m + 1u], v)",
+    ),
+    ("translation lost", "row.z * v.z + row.w", "row.z * v.z"),
+    (
+        "16 bits of mantissa",
+        "row.x * v.x +",
+        "bitcast<f32>(bitcast<u32>(row.x * v.x) & 0xffffff80u) +",
+    ),
+];
+
+/// Whose defect it is.
+fn stage_of(what: &str) -> &'static str {
+    match what {
+        "rounding down" | "24-bit depth" => "snap",
+        _ if TRANSFORM.iter().any(|(name, ..)| *name == what) => "transform",
+        _ => "clip",
     }
 }
 
 #[test]
-fn defects_of_transform_are_outside() {
-    let rows = [
-        (
-            "rows swapped",
-            "row_times(matrices[m], v)",
-            "row_times(matrices[m + 1u], v)",
-        ),
-        ("translation lost", "row.z * v.z + row.w", "row.z * v.z"),
-        (
-            "16 bits of mantissa",
-            "row.x * v.x +",
-            "bitcast<f32>(bitcast<u32>(row.x * v.x) & 0xffffff80u) +",
-        ),
-    ];
+fn a_defect_is_charged_to_its_stage_alone() {
     for gpu in devices() {
-        for (what, find, replace) in rows {
-            let (_, scene) = random().swap_remove(1);
-            let run = run_with(&gpu, patched(find, replace), &scene);
-            let transform = compare_transform(&scene, &run.positions);
-            assert!(transform.outside > 0, "{what} survives on {}", gpu.name);
-            let causes = transform.judgement().causes;
-            assert_eq!(
-                causes,
-                [(Cause::Vertex, transform.outside)].into(),
-                "{what}"
-            );
-            assert!(
-                !compare(&scene, BITS, &run.primitives).agrees(),
-                "{what}, end to end"
-            );
-            // The stages that follow did their work on what they were given.
-            let own = exact_positions(&run.positions);
-            let later = compare_from(&scene, &own, BITS, &run.primitives);
-            assert!(
-                later.agrees(),
-                "{what}: clip and snap are not to blame: {:?}",
-                later.told
-            );
+        for (what, find, replace) in DEFECTS.into_iter().chain(TRANSFORM) {
+            let mut found = 0;
+            for (name, scene) in random().iter().take(3) {
+                let run = run_with(&gpu, patched(find, replace), scene);
+                let stages = Judged::new(scene, &run);
+                let diverging = stages.diverging();
+                let at = format!("{what}, {name} on {}", gpu.name);
+                assert!(
+                    diverging.iter().all(|d| *d == stage_of(what)),
+                    "{at}: {diverging:?}: {:?} {:?}",
+                    stages.clip.told,
+                    stages.snap.told
+                );
+                let judgements = [
+                    stages.transform.judgement(),
+                    stages.clip.judgement(),
+                    stages.snap.judgement(),
+                ];
+                let causes = judgements.iter().flat_map(|j| j.causes.keys());
+                assert!(causes.into_iter().all(|c| *c == Cause::Vertex), "{at}");
+                found += diverging.len();
+            }
+            assert!(found > 0, "{what} survives on {}", gpu.name);
         }
     }
 }
@@ -132,21 +119,33 @@ fn defects_of_transform_are_outside() {
 #[test]
 fn an_order_that_depends_on_the_triangle_tears_neighbours_apart() {
     let scene = floor();
-    let spec = compare(&scene, BITS, &vertex::primitives(&scene, BITS));
-    assert!(spec.agrees(), "{:?}", spec.told);
     for gpu in devices() {
         let sound = run_with(&gpu, Sources::shipped(false), &scene);
-        let sound = compare(&scene, BITS, &sound.primitives);
-        assert!(sound.agrees(), "{}: {:?}", gpu.name, sound.told);
-        let torn = patched("if precedes(a, b) {", "if true {");
-        let torn = run_with(&gpu, torn, &scene);
-        let torn = compare(&scene, BITS, &torn.primitives);
-        println!("{}: {torn}", gpu.name);
-        assert_eq!(torn.outside, 0, "every corner is inside: {:?}", torn.told);
-        assert!(
-            torn.cracks > 0 && !torn.agrees(),
-            "survives on {}",
-            gpu.name
+        let sound = Judged::new(&scene, &sound);
+        assert!(sound.diverging().is_empty(), "{:?}", sound.clip.told);
+        let torn = run_with(&gpu, patched("if precedes(a, b) {", "if true {"), &scene);
+        let torn = Judged::new(&scene, &torn);
+        println!("{}: {}", gpu.name, torn.clip);
+        assert_eq!(torn.clip.outside, 0, "inside: {:?}", torn.clip.told);
+        assert!(torn.clip.cracks > 0, "survives on {}", gpu.name);
+        assert_eq!(torn.diverging(), ["clip"], "{:?}", torn.snap.told);
+    }
+}
+
+/// A rounding that depends on the triangle is inside, too, and tears what `clip` left
+/// equal to the bit.
+#[test]
+fn a_rounding_that_depends_on_the_triangle_tears_neighbours_apart() {
+    let scene = floor();
+    for gpu in devices() {
+        let torn = patched(
+            "snapped[at + 2u] = depth_key(p.z / p.w);",
+            "snapped[at + 2u] = depth_key(p.z / p.w) ^ select(0, i32(t & 1u), p.z > 0.01 * p.w);",
         );
+        let torn = Judged::new(&scene, &run_with(&gpu, torn, &scene));
+        println!("{}: {}", gpu.name, torn.snap);
+        assert_eq!(torn.snap.outside, 0, "inside: {:?}", torn.snap.told);
+        assert!(torn.snap.cracks > 0, "survives on {}", gpu.name);
+        assert_eq!(torn.diverging(), ["snap"], "{:?}", torn.clip.told);
     }
 }

@@ -35,19 +35,31 @@ fn bounded_numbers_are_the_plain_ones() {
 fn the_spec_conforms_to_itself() {
     for (name, scene) in random() {
         for bits in [4, BITS] {
-            let report = compare(&scene, bits, &vertex::primitives(&scene, bits));
-            assert!(report.agrees(), "{name}: {:?}", report.told);
-            let figures = report.figures;
+            let judged = Judged::new(&scene, &in_f32(&scene, bits));
+            let Judged { clip, snap, .. } = &judged;
+            assert!(judged.diverging().is_empty(), "{name}: {clip}, {snap}");
+            assert!(clip.agrees() && snap.agrees(), "{name}");
+            let ratio = clip.figures.error_over_bound;
+            assert!(0.0 < ratio && ratio < 1.0, "{name}: rounded once: {clip}");
+            let figures = snap.figures;
             assert_eq!((figures.moved, figures.error_subpixels), (0, 0.0), "{name}");
             assert_eq!(figures.error_keys, 0.0, "{name}");
+            let whole = whole(&scene, bits, &in_f32(&scene, bits).primitives);
+            assert!(whole.agrees(), "{name}: {:?}", whole.told);
         }
     }
+}
+
+/// Holds other triangles against those that the spec makes of its polygons.
+fn snapped(scene: &Scene, run: &VertexRun, observed: &Primitives) -> VertexReport {
+    let polygons = run.polygons.as_ref().expect("the spec's");
+    compare_snap(scene, BITS, &run.positions, polygons, observed)
 }
 
 #[test]
 fn rows_that_are_no_fans_are_reported() {
     let (_, scene) = random().swap_remove(1);
-    let good = vertex::primitives(&scene, BITS);
+    let run = in_f32(&scene, BITS);
     type Damage = fn(&mut Primitives);
     let damages: [Damage; 12] = [
         |p| {
@@ -73,9 +85,9 @@ fn rows_that_are_no_fans_are_reported() {
         },
     ];
     for (number, damage) in damages.into_iter().enumerate() {
-        let mut bad = good.clone();
+        let mut bad = run.primitives.clone();
         damage(&mut bad);
-        let report = compare(&scene, BITS, &bad);
+        let report = snapped(&scene, &run, &bad);
         assert!(
             report.malformed.is_some() && !report.agrees(),
             "damage {number}"
@@ -88,7 +100,8 @@ fn rows_that_are_no_fans_are_reported() {
 #[test]
 fn a_missing_or_additional_triangle_is_reported() {
     let (_, scene) = random().swap_remove(1);
-    let good = vertex::primitives(&scene, BITS);
+    let run = in_f32(&scene, BITS);
+    let good = &run.primitives;
     // Without its last polygon.
     let mut less = good.clone();
     let last = less.source.last().copied();
@@ -109,14 +122,14 @@ fn a_missing_or_additional_triangle_is_reported() {
     more.snapped.extend([[0, 0, 0], [99, 0, 0], [0, 99, 0]]);
     more.prims.push([end, end + 1, end + 2]);
     more.source.push(missing);
-    let less = compare(&scene, BITS, &less);
+    let less = snapped(&scene, &run, &less);
     assert_eq!(
         (less.differing, less.malformed),
         (1, None),
         "{:?}",
         less.told
     );
-    let more = compare(&scene, BITS, &more);
+    let more = snapped(&scene, &run, &more);
     let count = |d: &&Difference| d.triangle == missing as usize;
     let told = more
         .told
@@ -133,23 +146,64 @@ fn a_missing_or_additional_triangle_is_reported() {
 }
 
 #[test]
+fn a_missing_or_additional_polygon_is_reported() {
+    let (_, scene) = random().swap_remove(1);
+    let run = in_f32(&scene, BITS);
+    let good = run.polygons.as_ref().expect("the spec's");
+    let visible = (0..scene.triangles.len()).filter(|t| !polygon(good, *t).is_empty());
+    let first = visible.clone().next().expect("some are visible");
+    // A polygon less, or with a corner less, as far as a single one.
+    let corners = polygon(good, first).len();
+    for left in 0..corners {
+        let mut bad = good.clone();
+        let start = good.offsets[first] as usize;
+        bad.corners.drain(start + left..start + corners);
+        for offset in &mut bad.offsets[first + 1..] {
+            *offset -= u32::try_from(corners - left).expect("few");
+        }
+        let report = compare_clip(&scene, &run.positions, &bad);
+        assert_eq!(
+            report.differing, 1,
+            "{left} of {corners}: {:?}",
+            report.told
+        );
+        assert_eq!(report.told[0].triangle, first, "{left} of {corners}");
+    }
+    let fewer = &run.positions[1..];
+    for report in [
+        compare_clip(&scene, fewer, good),
+        compare_clip(
+            &scene,
+            &run.positions,
+            &Polygons {
+                offsets: vec![0],
+                corners: Vec::new(),
+            },
+        ),
+    ] {
+        assert!(report.malformed.is_some() && !report.agrees(), "{report}");
+    }
+}
+
+#[test]
 fn where_nothing_is_promised_nothing_is_judged_but_counted() {
-    // Twice the largest f32 in clip space: no number has a finite bound.
+    // Beyond the largest f32 in clip space: no number has a finite bound.
     let (_, mut scene) = random().swap_remove(0);
     for row in &mut scene.instances[0].rows {
-        *row = row.map(|v| v * 1e39);
+        *row = row.map(|v| v * 1e45);
     }
-    let report = compare(&scene, BITS, &vertex::primitives(&scene, BITS));
-    assert_eq!(
-        report.undecided + report.decisions,
-        report.triangles,
-        "{report}"
-    );
-    assert_eq!(report.admitted, report.triangles, "{report}");
+    let run = in_f32(&scene, BITS);
+    let Judged {
+        transform, clip, ..
+    } = Judged::new(&scene, &run);
+    assert_eq!(transform.unbounded, transform.vertices);
+    assert_eq!(clip.undecided + clip.decisions, clip.triangles, "{clip}");
+    assert_eq!(clip.admitted, clip.triangles, "{clip}");
     let nothing = Scene {
         triangles: Vec::new(),
         ..scene
     };
-    let report = compare(&nothing, BITS, &vertex::primitives(&nothing, BITS));
-    assert!(!report.agrees(), "nothing compared is no agreement");
+    let Judged { clip, snap, .. } = Judged::new(&nothing, &in_f32(&nothing, BITS));
+    assert!(!clip.agrees(), "nothing compared is no agreement");
+    assert!(!snap.agrees(), "nothing compared is no agreement");
 }

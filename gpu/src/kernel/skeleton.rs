@@ -1,0 +1,143 @@
+//! A stage's bindings and empty entry points as WGSL, for whoever writes a kernel.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use naga::{AddressSpace, Handle, Module, StorageAccess, Type, TypeInner};
+
+use super::layout::type_name;
+use super::stage::Stage;
+use crate::frame::WORKGROUP;
+use crate::wgsl::{Program, Sources, WgslError};
+
+/// Columns of a comment.
+const WIDTH: usize = 90;
+
+/// WGSL that passes as a kernel of the stage: what it is to do, its types and
+/// bindings, and entry points that do nothing yet.
+///
+/// # Errors
+/// None for the files that ship.
+pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
+    let program = Sources::shipped(false).link(stage.file)?.parse()?;
+    let mut text = format!("// Stage {}, a kernel of your own.\n//\n", stage.name);
+    comment(&mut text, &stage.invocation());
+    text.push_str("//\n");
+    comment(
+        &mut text,
+        "Variables and types may have other names; numbers, address spaces and the words in \
+         memory must be these, and what is not needed may be left out. Lines such as \
+         `//#import walk` insert files of gpu/src, with the bindings that they declare.",
+    );
+    let variables = used(&program, stage);
+    let mut seen = BTreeSet::new();
+    for variable in &variables {
+        structs(&mut text, &program.module, variable.ty, &mut seen);
+    }
+    text.push('\n');
+    for variable in &variables {
+        declare(&mut text, &program.module, variable);
+    }
+    let (pixels, per_pixel) = ("frame.width * frame.rows", ["sort", "resolve"]);
+    let items = if per_pixel.contains(&stage.name) {
+        pixels
+    } else {
+        "frame.items"
+    };
+    let attributes = format!("@compute @workgroup_size({WORKGROUP})");
+    let guard = format!("    if id.x >= {items} {{\n        return;\n    }}\n");
+    for entry in stage.compute {
+        let arguments = "@builtin(global_invocation_id) id: vec3<u32>";
+        function(&mut text, &attributes, entry, arguments, &guard);
+    }
+    for entry in stage.fragment {
+        let arguments = "@builtin(position) position: vec4<f32>, \
+                         @location(0) @interpolate(flat) prim: u32";
+        function(&mut text, "@fragment", entry, arguments, "");
+    }
+    Ok(text)
+}
+
+/// Variables of all the stage's entry points, in order of binding.
+fn used<'p>(program: &'p Program, stage: &Stage) -> Vec<&'p naga::GlobalVariable> {
+    let entries = stage.compute.iter().chain(stage.fragment);
+    let numbers: BTreeSet<u32> = entries
+        .filter_map(|entry| program.bindings(entry))
+        .flatten()
+        .map(|b| b.1)
+        .collect();
+    let variables = program.module.global_variables.iter().map(|(_, v)| v);
+    let number = |v: &naga::GlobalVariable| v.binding.as_ref().map(|b| b.binding);
+    let mut all: Vec<_> = variables
+        .filter(|v| number(v).is_some_and(|n| numbers.contains(&n)))
+        .collect();
+    all.sort_by_key(|v| number(v));
+    all
+}
+
+fn declare(text: &mut String, module: &Module, variable: &naga::GlobalVariable) {
+    let space = match variable.space {
+        AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => {
+            "storage, read_write"
+        }
+        AddressSpace::Storage { .. } => "storage, read",
+        _ => "uniform",
+    };
+    let number = variable.binding.as_ref().map_or(0, |b| b.binding);
+    let name = variable.name.as_deref().unwrap_or("unnamed");
+    let ty = type_name(module, variable.ty);
+    let _ = writeln!(
+        text,
+        "@group(0) @binding({number}) var<{space}> {name}: {ty};"
+    );
+}
+
+/// The structs that a type is made of, inner ones first.
+fn structs(
+    text: &mut String,
+    module: &Module,
+    ty: Handle<Type>,
+    seen: &mut BTreeSet<Handle<Type>>,
+) {
+    if !seen.insert(ty) {
+        return;
+    }
+    match &module.types[ty].inner {
+        TypeInner::Array { base, .. } => structs(text, module, *base, seen),
+        TypeInner::Struct { members, .. } => {
+            for member in members {
+                structs(text, module, member.ty, seen);
+            }
+            let _ = writeln!(text, "\nstruct {} {{", type_name(module, ty));
+            for member in members {
+                let name = member.name.as_deref().unwrap_or("unnamed");
+                let _ = writeln!(text, "    {name}: {},", type_name(module, member.ty));
+            }
+            text.push_str("}\n");
+        }
+        _ => {}
+    }
+}
+
+fn function(text: &mut String, attributes: &str, name: &str, arguments: &str, body: &str) {
+    let _ = write!(
+        text,
+        "\n{attributes}\nfn {name}({arguments}) {{\n{body}}}\n"
+    );
+}
+
+/// Words as a comment of several lines.
+fn comment(text: &mut String, words: &str) {
+    let mut line = String::from("//");
+    for word in words.split_whitespace() {
+        if line.len() + 1 + word.len() > WIDTH {
+            text.push_str(&line);
+            text.push('\n');
+            line = String::from("//");
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    text.push_str(&line);
+    text.push('\n');
+}

@@ -1,0 +1,32 @@
+//! The adapters of a command, and what it says of those of no use.
+
+use std::fmt::Display;
+
+use anyhow::Context;
+
+use super::Verdict;
+use crate::output::complain;
+use crate::replay::gpu::Adapters;
+
+/// The adapters that were asked for, and work or do not; all of them, if none was.
+pub(super) fn adapters(wanted: &[String]) -> anyhow::Result<Adapters> {
+    let adapters = Adapters::open(wanted);
+    let none = adapters.open.is_empty() && adapters.broken.is_empty();
+    if none && wanted.is_empty() {
+        anyhow::bail!("no adapter; `./x setup` installs two software drivers");
+    }
+    if none {
+        let wanted = wanted.join(" or ");
+        anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
+    }
+    Ok(adapters)
+}
+
+/// Says of everything that a run could not do without why, a line each.
+pub(super) fn could_not_run(mut reasons: Vec<impl Display>) -> anyhow::Result<Verdict> {
+    let last = reasons.pop().context("no reason")?;
+    for reason in reasons {
+        complain(reason);
+    }
+    anyhow::bail!("{last}")
+}

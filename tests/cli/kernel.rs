@@ -1,0 +1,141 @@
+//! `--kernel`: a user's WGSL in place of ours.
+
+use super::{Place, SCENE, repository};
+
+/// The scene with twelve layers, numbered from back to front.
+fn deep() -> String {
+    let deep = SCENE
+        .replace("layers = 2", "layers = 12")
+        .replace("spacing = 1", "spacing = 0.25");
+    let deep = deep.replace("fragments = 32", "fragments = 192");
+    deep.replace("layers_max = 2", "layers_max = 12")
+}
+
+/// Our own kernel, as a file of a user's that only imports it.
+const OURS: &str = "//#import abuffer\n";
+
+#[test]
+fn the_example_with_first_k_is_rejected() {
+    let place = Place::new("kernel-first-k");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    place.write("corpus/abuffer/flat/scene.toml", SCENE);
+    let example = repository().join("harness/examples/first-k/build.wgsl");
+    let kernel = format!("build={}", example.display());
+    let command = ["replay", "--leg", "gpu", "--kernel", &kernel];
+    let run = |scene| place.run(&[&command[..], &[scene]].concat());
+    // Up to eight layers nothing is wrong with it.
+    run("flat").expect(0);
+    let deep = run("deep").expect(1).stdout;
+    assert!(
+        deep.contains("not our kernel"),
+        "the run says whose kernel runs:\n{deep}"
+    );
+    assert!(deep.contains(", build: "), "the stage is to blame:\n{deep}");
+    assert!(deep.contains("coverage"), "fragments are missing:\n{deep}");
+    assert!(
+        deep.contains(&format!("--kernel {kernel}")),
+        "again with it:\n{deep}"
+    );
+}
+
+#[test]
+fn our_own_kernel_from_a_file_agrees() {
+    let place = Place::new("kernel-ours");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    place.write("mine.wgsl", OURS);
+    for stage in ["opaque", "build", "sort", "resolve"] {
+        let kernel = format!("{stage}=mine.wgsl");
+        place
+            .run(&["replay", "--leg", "gpu", "--kernel", &kernel])
+            .expect(0);
+    }
+}
+
+#[test]
+fn a_skeleton_is_printed_and_accepted() {
+    let place = Place::new("kernel-skeleton");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let text = place
+        .run(&["replay", "--kernel", "resolve=?"])
+        .expect(0)
+        .stdout;
+    assert!(
+        text.contains("var<storage, read_write> picture: array<vec4<f32>>"),
+        "{text}"
+    );
+    place.write("empty.wgsl", &text);
+    let command = ["replay", "--leg", "gpu", "--kernel", "resolve=empty.wgsl"];
+    let ran = place.run(&command).expect(1);
+    assert!(
+        ran.stdout.contains(", resolve: "),
+        "an empty kernel draws nothing:\n{}",
+        ran.stdout
+    );
+}
+
+#[test]
+fn a_path_without_a_kernel_is_skipped_and_says_so() {
+    let place = Place::new("kernel-path");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let compute = "@compute @workgroup_size(64) fn build() {}";
+    place.write("compute.wgsl", compute);
+    let command = ["replay", "--leg", "gpu", "--json", "out.json"];
+    let kernel = ["--kernel", "build=compute.wgsl"];
+    place.run(&[&command[..], &kernel].concat()).expect(1);
+    let json = std::fs::read_to_string(place.root.join("out.json")).expect("written");
+    let reason = "compute.wgsl has no kernel of stage build for the hardware's rasteriser";
+    assert!(json.contains(reason), "{json}");
+    // With no leg left that runs it, nothing is judged.
+    for legs in [["--path", "fragment"], ["--leg", "spec"]] {
+        let command = [&["replay"][..], &kernel, &legs].concat();
+        let stderr = place.run(&command).expect(2).stderr;
+        assert!(
+            stderr.contains("no leg that was asked for runs its kernels"),
+            "{stderr}"
+        );
+    }
+}
+
+#[test]
+fn mistakes_have_a_line_each() {
+    let place = Place::new("kernel-mistakes");
+    place
+        .write("corpus/abuffer/deep/scene.toml", &deep())
+        .write("broken.wgsl", "fn build() {\n    let x = ;\n}\n")
+        .write("size.wgsl", "@compute @workgroup_size(32) fn build() {}\n")
+        .write("mine.wgsl", OURS);
+    for (values, part) in [
+        (&["build"][..], "not STAGE=FILE"),
+        (
+            &["built=mine.wgsl"],
+            "no stage is called built; there are transform, clip",
+        ),
+        (&["build=gone.wgsl"], "gone.wgsl: does not exist"),
+        (&["build=corpus"], "corpus: is not a regular file"),
+        (&["build=broken.wgsl"], "broken.wgsl:2: "),
+        (
+            &["build=size.wgsl"],
+            "size.wgsl:1: build has workgroups of [32, 1, 1], not [64, 1, 1]",
+        ),
+        (
+            &["sort=size.wgsl"],
+            "size.wgsl:1: no entry point of stage sort: sort",
+        ),
+        (
+            &["build=mine.wgsl", "build=mine.wgsl"],
+            "stage build has a kernel already",
+        ),
+    ] {
+        let mut arguments = vec!["replay"];
+        for value in values {
+            arguments.extend(["--kernel", value]);
+        }
+        let ran = place.run(&arguments).expect(2);
+        assert_eq!(ran.stderr.lines().count(), 1, "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains(part),
+            "{part:?} is not in {:?}",
+            ran.stderr
+        );
+    }
+}
