@@ -34,7 +34,7 @@ const STYLE: &str = include_str!("report/style.css");
 const SCRIPT: &str = include_str!("report/page.js");
 
 /// What a report is made of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReportInput {
     /// What was run, where and with what.
     pub run: RunInfo,

@@ -72,8 +72,7 @@ impl Lab {
     /// Runs a mutant on every adapter, side by side, and each of its paths.
     ///
     /// # Errors
-    /// What keeps a leg from a result, or shipped kernels that do not agree. The devices
-    /// may be lost then.
+    /// What keeps a leg from a result, or shipped kernels that do not agree.
     pub fn run(&mut self, mutant: &Mutant) -> Result<Vec<Cell>, String> {
         if let Some(reason) = &mutant.absent {
             return Ok(vec![Cell::blank(mutant, String::new(), reason.clone())]);

@@ -259,11 +259,7 @@ fn a_report_of_rows_alone() {
 
 #[test]
 fn nothing_is_never_good_news() {
-    let empty = ReportInput {
-        run: RunInfo::default(),
-        scenes: Vec::new(),
-        mutants: Vec::new(),
-    };
+    let empty = ReportInput::default();
     let page_of = |input: &ReportInput| page(input).into_string();
     let page = page_of(&empty);
     assert!(page.contains("Nothing was compared"), "no scenes");

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use triptych_spec::abuffer::{NOTHING, Opaque, Sorted, resolve};
-use triptych_spec::bound::Bounded;
+use triptych_spec::bound::{Bounded, TINY, gamma};
 use triptych_spec::raster::Fragment;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
@@ -105,6 +105,31 @@ fn resolved(layers: &Layers, depth_test: bool) -> Vec<[Bounded; 3]> {
 /// at most `3n + 3` a term, none of which exceeds `scale`.
 fn f64_error(n: usize, scale: f64) -> f64 {
     2.0 * (3 * n + 3) as f64 * f64::EPSILON * scale
+}
+
+/// The closed form of the bound, by hand: neither looser nor tighter than derived.
+#[test]
+fn the_bound_counts_roundings() {
+    let mut layers = [[0.0, 0.0, 0.0, 0.5]; 5];
+    // Red and the background meet roundings: 2 * 3 + 5 + 3 and 2 * 5 + 5 + 3.
+    layers[3][0] = 2.0;
+    let [red, green, blue] = pixel(&layers, [0.0, 4.0, 0.0]);
+    let close = |bounded: Bounded, k: u32| {
+        let must = gamma(k) * bounded.value;
+        assert!(
+            (bounded.bound / must - 1.0).abs() < 1e-12,
+            "{bounded:?} {k}"
+        );
+    };
+    close(red, 14);
+    close(green, 18);
+    // Six terms of nothing, each of three operations that flush.
+    assert_eq!(blue.bound.to_bits(), (18.0 * TINY).to_bits(), "{blue:?}");
+    // An invisible layer's colour is a factor of what its weight's operations flush.
+    layers[3] = [2.0, 0.0, 0.0, 0.0];
+    let [red, ..] = pixel(&layers, [0.0; 3]);
+    let must = (f64::from(3 * 3 + 2) * 2.0 + 18.0) * TINY;
+    assert_eq!(red.bound.to_bits(), must.to_bits(), "{red:?}");
 }
 
 proptest! {
