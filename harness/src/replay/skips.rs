@@ -18,9 +18,9 @@ use crate::row::Class;
 
 /// The path on which an adapter tests skipping for a scene: `fragment` or `compute`, by
 /// the sum of the bytes of both names, so that it depends on nothing else of a run but
-/// on the paths that were asked for. Both for every scene would make a replay of the
-/// corpus take 18 % longer. `native` is left to `compute`, from which it differs in the arithmetic of keys
-/// only, unless it was asked for alone.
+/// on the paths that were asked for. Both for every scene would be most of what the
+/// row costs twice over. `native` is left to `compute`, from which it differs in the
+/// arithmetic of keys only, unless it was asked for alone.
 pub fn turn(scene: &str, adapter: &str, paths: &[Path]) -> Option<Path> {
     let alone = paths.len() == 1;
     let paths = paths.iter().filter(|p| alone || **p != Path::Native);
