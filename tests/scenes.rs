@@ -90,7 +90,7 @@ fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
 }
 
 /// What is wrong with an outcome: rows that diverge, legs that compared nothing and
-/// do not say why.
+/// do not say why, adapters on which skipping was not tested.
 fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
     if outcome.facts.is_none() {
         let reasons = outcome.rows.iter().filter_map(|r| r.skipped.clone());
@@ -125,6 +125,13 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
         let compared = rows.iter().any(|r| r.compared > 0);
         if rows.is_empty() || (!compared && rows.iter().any(|r| r.skipped.is_none())) {
             wrong.push(format!("nothing was compared with {leg}, for no reason"));
+        }
+    }
+    for adapter in adapters {
+        let label = format!("gpu@{}/", adapter.gpu.name);
+        let mut rows = outcome.rows.iter().filter(|r| r.stage == "plan");
+        if !rows.any(|r| r.compared > 0 && r.a.starts_with(&label)) {
+            wrong.push(format!("skipping was not tested on {}", adapter.gpu.name));
         }
     }
     wrong

@@ -32,8 +32,8 @@ pub struct Unit {
     pub rows: Vec<Row>,
     /// Its pictures; their PNGs are files of their own.
     pub pictures: Vec<Picture>,
-    /// Milliseconds that skipping saved, where measured.
-    pub saved_ms: Option<f64>,
+    /// Legs of which skipping was tested, and the milliseconds that it saved.
+    pub saved: Vec<(String, f64)>,
 }
 
 /// A folder of units.

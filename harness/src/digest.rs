@@ -30,13 +30,26 @@ impl Pair<'_> {
     }
 
     /// Items that differ at the first stage that diverges, with or without a
-    /// cause; later stages inherit them.
+    /// cause; later stages inherit them. Pairs that share a column are added up.
     pub fn differ(&self) -> u64 {
-        let mut rows = self.rows.iter();
-        rows.find(|r| r.verdict() == Verdict::Diverge)
-            .map_or(0, |r| r.differ.max(r.unexplained))
+        let mut first: Vec<&Row> = Vec::new();
+        for row in &self.rows {
+            let known = first.iter().any(|r| r.a == row.a && r.b == row.b);
+            if row.verdict() == Verdict::Diverge && !known {
+                first.push(row);
+            }
+        }
+        sum(first.iter().map(|r| r.differ.max(r.unexplained)))
+    }
+
+    /// Whether its column is [`PLAN`].
+    fn is_plan(&self) -> bool {
+        self.rows.iter().all(|r| r.stage == "plan")
     }
 }
+
+/// The column of all legs that are compared with themselves, with and without skipping.
+pub const PLAN: (&str, &str) = ("gpu", "plan");
 
 /// The order of columns: GPU legs, Embree, then what a GPU leg is compared with
 /// beside the spec, then the rest.
@@ -83,6 +96,15 @@ pub fn pairs(rows: &[Row]) -> Vec<Pair<'_>> {
         }
     }
     pairs
+}
+
+/// Rows by column of a table: a pair of legs, or all that [`PLAN`] holds.
+pub fn columns(rows: &[Row]) -> Vec<Pair<'_>> {
+    let (plan, mut columns): (Vec<_>, Vec<_>) = pairs(rows).into_iter().partition(Pair::is_plan);
+    let rows: Vec<&Row> = plan.into_iter().flat_map(|pair| pair.rows).collect();
+    let (a, b) = PLAN;
+    columns.extend((!rows.is_empty()).then_some(Pair { a, b, rows }));
+    columns
 }
 
 /// Rows by scene, in order of first appearance.

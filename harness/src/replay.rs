@@ -90,8 +90,8 @@ pub struct Outcome {
     pub marks: Vec<(u32, Cause)>,
     /// What ran.
     pub plan: Option<Plan>,
-    /// Milliseconds that skipping saved on a GPU, where measured.
-    pub saved_ms: Option<f64>,
+    /// GPU legs of which skipping was tested, and the milliseconds that it saved.
+    pub saved: Vec<(String, f64)>,
     /// What the spec found, for a snapshot.
     pub facts: Option<Facts>,
     /// Pictures of the legs, then maps.
@@ -136,7 +136,7 @@ impl Outcome {
             described: rows.described,
             marks: rows.marks,
             plan: None,
-            saved_ms: None,
+            saved: Vec::new(),
             facts: None,
             pictures: Vec::new(),
             remarks: Vec::new(),

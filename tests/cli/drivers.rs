@@ -86,8 +86,8 @@ fn broken(rows: &[(String, Value)]) -> &(String, Value) {
     let mut broken = rows.iter().filter(|(label, _)| !label.contains('/'));
     let row = broken.next().expect("a row for the broken adapter");
     assert_eq!(broken.next(), None, "one row a scene is enough");
-    assert_eq!(row.1["stage"], "leg");
-    assert_eq!(count(&row.1, "compared"), 0);
+    assert_eq!(row.1["stage"], "leg", "the leg as a whole");
+    assert_eq!(count(&row.1, "compared"), 0, "nothing ran");
     row
 }
 

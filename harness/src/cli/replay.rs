@@ -121,12 +121,8 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let out = corpus::root().with_file_name("reports").join("out");
     options.cache = args.cache(&out)?;
     let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
-    for remark in options.cache.iter().flat_map(Cache::remarks) {
-        results.reporter.remark(&remark)?;
-    }
-    for kernel in &foreign {
-        let (stage, file) = (kernel.stage.name, &kernel.file);
-        let remark = format!("stage {stage} runs {file} on every adapter, not our kernel");
+    let of_cache = options.cache.iter().flat_map(Cache::remarks);
+    for remark in of_cache.chain(foreign.iter().map(instead)) {
         results.reporter.remark(&remark)?;
     }
     let mut unreadable = Vec::new();
@@ -169,6 +165,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     verdict(&summary)
+}
+
+/// Whose kernel runs.
+fn instead(kernel: &Foreign) -> String {
+    let (stage, file) = (kernel.stage.name, &kernel.file);
+    format!("stage {stage} runs {file} on every adapter, not our kernel")
 }
 
 /// A run that compared nothing at all has not agreed on anything.

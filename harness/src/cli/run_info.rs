@@ -84,14 +84,12 @@ pub fn scene_report(outcome: Outcome) -> SceneReport {
             saved_ms: None,
         })
         .collect();
-    if let Some(saved_ms) = outcome.saved_ms {
-        plan.push(PlanLine {
-            pass: "all of the above".into(),
-            runs: true,
-            reason: "skipping, against the same leg with --no-skip".into(),
-            saved_ms: Some(saved_ms),
-        });
-    }
+    plan.extend(outcome.saved.into_iter().map(|(leg, ms)| PlanLine {
+        pass: "all of the above".into(),
+        runs: true,
+        reason: format!("skipping on {leg}, against the same leg with --no-skip"),
+        saved_ms: Some(ms),
+    }));
     SceneReport {
         name: outcome.name,
         purpose: outcome.purpose,

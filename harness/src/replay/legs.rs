@@ -9,7 +9,7 @@ use super::gpu::{Adapter, Broken, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
-use super::{end_to_end, pictures, skips};
+use super::{Options, end_to_end, pictures, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -41,8 +41,8 @@ impl Run<'_> {
                 ..
             } = &adapter.gpu.info;
             let bits = adapter.bits(path).to_string();
-            let measures = self.measures_skips(adapter, path).to_string();
             let grid = format!("{:?}", adapter.grid);
+            let skipping = self.tests_skipping(adapter, path).to_string();
             let inputs = [
                 name,
                 driver,
@@ -50,7 +50,7 @@ impl Run<'_> {
                 path.name(),
                 &bits,
                 &grid,
-                &measures,
+                &skipping,
             ];
             let words = format!("{name} {driver}");
             self.unit(Uses::Driver(&words), &inputs, |run| run.leg(adapter, path))?;
@@ -159,8 +159,9 @@ impl Run<'_> {
             };
             end_to_end::run(&leg, spec, &mut self.rows)?;
         }
-        if self.options.skip && self.measures_skips(adapter, path) {
-            self.saved_ms = skips::run(&leg, &seen, &mut self.rows)?;
+        if self.tests_skipping(adapter, path) {
+            let saved = skips::run(&leg, &seen, &mut self.rows)?;
+            self.saved.extend(saved.map(|ms| (leg.label(), ms)));
         }
         if self.options.pictures && !seen.value.abuffer.image.is_empty() {
             let image = &seen.value.abuffer.image;
@@ -237,19 +238,13 @@ impl Run<'_> {
         leg.run(judged.then_some(&mut self.rows))
     }
 
-    /// Skipping is measured once a scene, on the last adapter's compute path.
-    fn measures_skips(&self, adapter: &Adapter, path: Path) -> bool {
-        let last = self
-            .adapters
-            .last()
-            .is_some_and(|a| std::ptr::eq(a, adapter));
-        let wanted = self
-            .options
-            .paths
-            .iter()
-            .filter(|p| **p != Path::Native)
-            .max();
-        last && wanted == Some(&path) && self.options.from == From::Cover
+    /// From a later stage on than coverage, the spec's lists are given: nothing is skipped.
+    fn tests_skipping(&self, adapter: &Adapter, path: Path) -> bool {
+        let Options {
+            skip, from, paths, ..
+        } = self.options;
+        let turn = skips::turn(&self.loaded.name, &adapter.gpu.name, paths);
+        *skip && *from == From::Cover && turn == Some(path)
     }
 
     fn capacity(&self, spec: &SpecRun) -> Option<u32> {

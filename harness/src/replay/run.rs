@@ -41,7 +41,7 @@ pub(super) struct Run<'a> {
     spec: Option<Rc<Observed<Spec, SpecRun>>>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
-    pub(super) saved_ms: Option<f64>,
+    pub(super) saved: Vec<(String, f64)>,
     facts: Option<Facts>,
     remarks: Vec<String>,
 }
@@ -56,7 +56,7 @@ impl<'a> Run<'a> {
             spec: None,
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
-            saved_ms: None,
+            saved: Vec::new(),
             facts: None,
             remarks: loaded.stats.remarks(),
         }
@@ -86,7 +86,7 @@ impl<'a> Run<'a> {
             described: self.rows.described,
             marks: self.rows.marks,
             plan: Some(self.plan),
-            saved_ms: self.saved_ms,
+            saved: self.saved,
             facts: self.facts,
             pictures: self.pictures,
             remarks: self.remarks,
@@ -129,18 +129,17 @@ impl<'a> Run<'a> {
         if let Some(unit) = cache.get(&key) {
             self.rows.rows.extend(unit.rows);
             self.pictures.extend(unit.pictures);
-            self.saved_ms = self.saved_ms.or(unit.saved_ms);
+            self.saved.extend(unit.saved);
             return Ok(());
         }
         let (rows, pictures) = (self.rows.rows.len(), self.pictures.len());
-        let saved_ms = self.saved_ms.take();
+        let saved = self.saved.len();
         work(self)?;
         let unit = Unit {
             rows: self.rows.rows[rows..].to_vec(),
             pictures: self.pictures[pictures..].to_vec(),
-            saved_ms: self.saved_ms,
+            saved: self.saved[saved..].to_vec(),
         };
-        self.saved_ms = self.saved_ms.or(saved_ms);
         if let Err(error) = cache.put(&key, &unit) {
             self.remarks.push(format!("cache: {error}"));
         }

@@ -12,10 +12,10 @@ pub fn headline(input: &ReportInput, summary: &Summary) -> String {
     let scenes = plural(input.scenes.len() as u64, "scene");
     match input.count(Verdict::Diverge) {
         0 if summary.compared == 0 => "nothing was compared".to_owned(),
-        0 => format!(
-            "{} agree",
-            plural(input.count(Verdict::Agree) as u64, "scene")
-        ),
+        0 => match input.count(Verdict::Agree) {
+            1 => "1 scene agrees".to_owned(),
+            n => format!("{} agree", plural(n as u64, "scene")),
+        },
         1 => format!("1 of {scenes} diverges"),
         n => format!("{n} of {scenes} diverge"),
     }

@@ -7,10 +7,11 @@ use crate::digest::{self, Pair, column_order, leg_parts};
 use crate::row::Verdict;
 use crate::text::{clean, count, share};
 
-/// All scenes, one line each, one column per pair of legs.
+/// All scenes, one line each, one column per pair of legs; those of [`digest::PLAN`]
+/// share one.
 pub fn section(input: &ReportInput) -> Markup {
     let mut pairs: Vec<(&str, &str)> = Vec::new();
-    for pair in input.scenes.iter().flat_map(|s| digest::pairs(&s.rows)) {
+    for pair in input.scenes.iter().flat_map(|s| digest::columns(&s.rows)) {
         if !pairs.contains(&(pair.a, pair.b)) {
             pairs.push((pair.a, pair.b));
         }
@@ -74,7 +75,7 @@ fn heading(a: &str, b: &str) -> Markup {
 }
 
 fn line(i: usize, scene: &SceneReport, pairs: &[(&str, &str)]) -> Markup {
-    let own = digest::pairs(&scene.rows);
+    let own = digest::columns(&scene.rows);
     html! {
         tr data-verdict=(verdict_name(scene.verdict())) data-name=(clean(&scene.name)) {
             td { (sign(scene.verdict())) }

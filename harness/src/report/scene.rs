@@ -62,10 +62,14 @@ fn lines(words: &str) -> Markup {
 }
 
 fn plan(plan: &[PlanLine]) -> Markup {
-    let saved: f64 = plan.iter().filter_map(|p| p.saved_ms).sum();
+    let saved: Vec<f64> = plan.iter().filter_map(|p| p.saved_ms).collect();
+    let (legs, saved) = (saved.len(), saved.iter().sum::<f64>());
     html! {
         @if !plan.is_empty() {
-            h4 { "Plan" @if saved > 0.0 { ": " (time(saved)) " saved" } }
+            h4 { "Plan" @if saved > 0.0 {
+                ": " (time(saved)) " saved"
+                @if legs > 1 { " on " (legs) " GPU legs together" }
+            } }
             div.scroll tabindex="0" role="region" aria-label="Plan" {
                 table {
                     thead { tr {

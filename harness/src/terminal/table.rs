@@ -1,4 +1,5 @@
-//! The table: one line per scene, one column per pair of legs.
+//! The table: one line per scene, one column per pair of legs; but one for all that are
+//! compared with themselves.
 
 use console::{Style, measure_text_width};
 
@@ -16,7 +17,7 @@ use crate::text::{clean, compact, count, plural, share, time};
 pub struct Table {
     width: usize,
     ink: Ink,
-    /// Pairs of legs that have a column.
+    /// Pairs of legs that have a column, and [`digest::PLAN`].
     pairs: Vec<(String, String)>,
     /// Reasons for skipping, by the number that stands for them.
     reasons: Vec<String>,
@@ -48,10 +49,11 @@ impl Table {
     pub fn scene(&mut self, scene: &SceneResult) -> Vec<String> {
         self.totals.add(&scene.rows);
         let pairs = digest::pairs(&scene.rows);
-        let mut lines = self.header(&pairs);
+        let columns = digest::columns(&scene.rows);
+        let mut lines = self.header(&columns);
         let known = self.reasons.len();
         match Layout::fit(self.width, &self.pairs) {
-            Some(layout) => lines.extend(self.columns(layout, scene, &pairs)),
+            Some(layout) => lines.extend(self.columns(layout, scene, &columns)),
             None => lines.push(self.sentence(scene, &pairs)),
         }
         for (i, reason) in self.reasons.iter().enumerate().skip(known) {
@@ -85,7 +87,11 @@ impl Table {
         if let Some(layout) = Layout::fit(self.width, &self.pairs) {
             for i in layout.unclear(&self.pairs) {
                 let (a, b) = &self.pairs[i];
-                lines.push(format!("column {}: {a} against {b}", i + 1));
+                let legs = match (a.as_str(), b.as_str()) {
+                    digest::PLAN => "each GPU leg against itself with --no-skip".to_owned(),
+                    _ => format!("{a} against {b}"),
+                };
+                lines.push(format!("column {}: {legs}", i + 1));
             }
             lines.push(String::new());
             lines.extend(layout.header(&self.pairs));

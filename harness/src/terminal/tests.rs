@@ -224,13 +224,51 @@ fn columns_that_look_alike_are_told_apart_below_the_legend() {
     let rows = vec![
         against("spec", "gpu@a-long-adapter-name-1/compute"),
         against("spec", "gpu@a-long-adapter-name-2/compute"),
-        against("gpu@x/compute", "gpu@x/compute --no-skip"),
+        against("gpu@x/compute", "gpu@x/fragment"),
         against("spec", "embree"),
     ];
     let text = printed(80, false, &[scene("abuffer/a", rows)]);
     assert!(text.contains("column 1: spec against gpu@a-long-adapter-name-1/compute\n"));
-    assert!(text.contains("column 4: gpu@x/compute against gpu@x/compute --no-skip\n"));
+    assert!(text.contains("column 4: gpu@x/compute against gpu@x/fragment\n"));
     assert!(!text.contains("column 3"), "embree is clear: {text}");
+}
+
+/// However many legs test skipping, they share a column; what diverges is named.
+#[test]
+fn legs_against_themselves_share_a_column() {
+    let plan = |leg: &str, differ| Row {
+        differ,
+        causes: [(Cause::LostNode, differ)]
+            .into_iter()
+            .filter(|c| c.1 > 0)
+            .collect(),
+        ..row("abuffer/a", "plan", leg, &format!("{leg} --no-skip"))
+    };
+    let built =
+        ["gpu@x/compute", "gpu@y/fragment"].map(|leg| row("abuffer/a", "build", "spec", leg));
+    for (differ, cell) in [(0, "✓ 2,000"), (3, "✗ 7")] {
+        let mut rows = built.to_vec();
+        rows.extend([
+            plan("gpu@x/compute", differ),
+            plan("gpu@y/fragment", differ + differ / 3),
+        ]);
+        let text = printed(120, false, &[scene("abuffer/a", rows)]);
+        let line = "column 3: each GPU leg against itself with --no-skip\n";
+        assert!(text.contains(line), "{text}");
+        let header = text
+            .lines()
+            .find(|l| l.contains("against  "))
+            .expect("a header");
+        let names: Vec<&str> = header.split_whitespace().collect();
+        assert_eq!(names, ["spec", "against", "x", "y", "plan"], "{text}");
+        let cells = text
+            .lines()
+            .find(|l| l.contains("  abuffer/a "))
+            .expect("its line");
+        assert!(cells.trim_end().ends_with(cell), "{cells} lacks {cell}");
+        let told = "gpu@y/fragment against gpu@y/fragment --no-skip, plan: 4 of 1,000";
+        assert_eq!(text.contains(told), differ > 0, "{text}");
+    }
 }
 
 #[test]
