@@ -21,7 +21,7 @@ use crate::dump::Dump;
 use crate::output::{complain, stdout};
 use crate::replay::gpu::{Adapter, Adapters, From};
 use crate::replay::{Options, replay};
-use crate::report::{self, ReportInput};
+use crate::report::{self, ReportInput, RunInfo};
 use crate::row::Summary;
 use crate::{corpus, embree};
 
@@ -138,26 +138,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     let summary = results.summary(start.elapsed().as_secs_f64())?;
-    let mutants = last_mutants(&out, &mut results)?;
-    let Results {
-        mut reporter,
-        scenes,
-        ..
-    } = results;
-    let run = run_info(
-        &adapters,
-        &options.broken,
-        library.as_ref(),
-        summary.seconds,
-    );
-    let page = out.join("index.html");
-    let input = ReportInput {
-        run,
-        scenes,
-        mutants,
-    };
-    report::write(&page, &input).with_context(|| format!("cannot write {}", page.display()))?;
-    reporter.finish(&summary, Some(&page))?;
+    let seconds = summary.seconds;
+    let run = run_info(&adapters, &options.broken, library.as_ref(), seconds);
+    let page = publish(&out, run, results, &summary)?;
     if args.open {
         open(&page)?;
     }
@@ -165,6 +148,30 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     verdict(&summary)
+}
+
+/// Writes the report, and ends what the terminal shows.
+fn publish(
+    out: &std::path::Path,
+    run: RunInfo,
+    mut results: Results,
+    summary: &Summary,
+) -> anyhow::Result<PathBuf> {
+    let mutants = last_mutants(out, &mut results)?;
+    let Results {
+        mut reporter,
+        scenes,
+        ..
+    } = results;
+    let page = out.join("index.html");
+    let input = ReportInput {
+        run,
+        scenes,
+        mutants,
+    };
+    report::write(&page, &input).with_context(|| format!("cannot write {}", page.display()))?;
+    reporter.finish(summary, Some(&page))?;
+    Ok(page)
 }
 
 /// Whose kernel runs.
