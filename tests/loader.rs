@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
 
-use triptych_harness::mesh;
 use triptych_harness::scene::{Loaded, load};
 
+#[path = "hostile/cases.rs"]
+mod cases;
 #[path = "hostile/files.rs"]
 mod files;
 #[path = "hostile/limits.rs"]
@@ -16,25 +17,12 @@ mod limits;
 mod memory;
 #[path = "hostile/mutate.rs"]
 mod mutate;
-#[path = "hostile/obj.rs"]
-mod obj;
-#[path = "hostile/ply.rs"]
-mod ply;
-#[path = "hostile/toml.rs"]
-mod toml;
+#[path = "hostile/sound.rs"]
+mod sound;
 
-/// What is to come of a file.
-enum Outcome {
-    /// It loads with so many triangles.
-    Loads(usize),
-    /// It fails; the error is the file's path followed by this.
-    Fails(&'static str),
-}
-
-use Outcome::{Fails, Loads};
-
-/// Name, bytes, outcome.
-type Case = (&'static str, &'static [u8], Outcome);
+use cases::Outcome::{Fails, Loads};
+use cases::{Case, obj, ply, toml};
+use sound::assert_sound;
 
 /// Longer than any small file may take, on the slowest machine.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -134,25 +122,4 @@ fn hostile_ply() {
 #[test]
 fn hostile_scenes() {
     assert_none(&run("scene", toml::CASES));
-}
-
-/// What every mesh that loads must satisfy.
-fn assert_sound(mesh: &mesh::Mesh) {
-    let finite = mesh.positions.iter().flatten().all(|x| x.is_finite());
-    assert!(finite, "a coordinate is not finite");
-    let corners = mesh.triangles.iter().flatten();
-    let inside = corners
-        .into_iter()
-        .all(|v| (*v as usize) < mesh.positions.len());
-    assert!(inside, "a corner is out of range");
-    let named = mesh
-        .material
-        .iter()
-        .all(|m| (*m as usize) < mesh.materials.len());
-    assert!(named, "a material is out of range");
-    let counts = [mesh.material.len(), mesh.triangles.len()];
-    assert!(
-        counts[0] == counts[1] && counts[0] > 0,
-        "counts are {counts:?}"
-    );
 }

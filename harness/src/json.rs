@@ -138,12 +138,17 @@ pub fn read(paths: &[impl AsRef<Path>]) -> Result<Merged, InputError> {
         let file = File::open(path).map_err(|e| fail(e.to_string()))?;
         seconds += read_run(path, BufReader::new(file), &mut read)?;
     }
-    let summary = Summary::of(&read.rows, seconds);
-    Ok(Merged {
-        rows: read.rows,
-        summary,
-        mutants: read.mutants,
-    })
+    Ok(read.merged(seconds))
+}
+
+/// Reads what one file holds; `path` is what errors name.
+///
+/// # Errors
+/// As [`read`], for one file.
+pub fn read_from(path: &Path, input: impl BufRead) -> Result<Merged, InputError> {
+    let mut read = Lines::default();
+    let seconds = read_run(path, input, &mut read)?;
+    Ok(read.merged(seconds))
 }
 
 /// What lines amount to so far.
@@ -178,6 +183,14 @@ impl Lines {
             }
         }
         Ok(0.0)
+    }
+
+    fn merged(self, seconds: f64) -> Merged {
+        Merged {
+            summary: Summary::of(&self.rows, seconds),
+            rows: self.rows,
+            mutants: self.mutants,
+        }
     }
 
     fn is_complete(&self) -> bool {

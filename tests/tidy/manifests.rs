@@ -14,12 +14,13 @@ fn manifest(folder: &str) -> Table {
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
+/// A package of a workspace of its own.
+const FUZZ: &str = "tests/fuzz";
+
 /// The crates' roots from the repository's, with `/`.
 pub fn targets() -> Vec<String> {
-    MEMBERS
-        .iter()
-        .flat_map(|member| targets_of(member))
-        .collect()
+    let packages = MEMBERS.iter().chain([&FUZZ]);
+    packages.flat_map(|package| targets_of(package)).collect()
 }
 
 fn targets_of(member: &str) -> Vec<String> {
@@ -36,7 +37,9 @@ fn targets_of(member: &str) -> Vec<String> {
             });
         }
     }
-    let library = format!("{member}/src/lib.rs");
+    let library = manifest.get("lib").and_then(|lib| lib.get("path"));
+    let library = library.and_then(Value::as_str).unwrap_or("src/lib.rs");
+    let library = format!("{member}/{library}");
     targets.extend(root().join(&library).is_file().then_some(library));
     targets
 }
@@ -44,7 +47,7 @@ fn targets_of(member: &str) -> Vec<String> {
 /// The tool that reviews snapshots is of the version that writes them.
 #[test]
 fn the_reviewing_tool_fits() {
-    let pinned = &manifest("")["workspace"]["dependencies"]["insta"]["version"];
+    let pinned = &manifest("")["workspace"]["dependencies"]["insta"];
     let version = pinned.as_str().expect("a version").trim_start_matches('=');
     let command = format!("cargo install cargo-insta --version {version} --locked");
     let page = std::fs::read_to_string(root().join("CONTRIBUTING.md")).expect("there is one");
@@ -92,6 +95,13 @@ fn dependencies_are_pinned() {
             violations.push(format!(
                 "Cargo.toml: {name} has {version:?}, not an exact version"
             ));
+        }
+    }
+    let fuzz = manifest(FUZZ);
+    for (name, given) in fuzz["dependencies"].as_table().expect("a table") {
+        let exact = given.as_str().is_some_and(|v| v.starts_with('='));
+        if !exact && given.get("path").is_none() {
+            violations.push(format!("{FUZZ}/Cargo.toml: {name} is not exact"));
         }
     }
     for member in MEMBERS {
