@@ -3,8 +3,11 @@
 //!
 //! A scene without its mesh is ignored, and says so; asked for all the same
 //! (`--include-ignored`), it fails. A snapshot that differs or is missing is left pending
-//! for `cargo insta review`.
+//! for `cargo insta review`. With `TRIPTYCH_ROWS=DIR` every scene leaves its rows there as
+//! JSON lines, which `triptych report` merges, whatever machine or shard tested it.
 
+#[path = "scenes/contributor.rs"]
+mod contributor;
 mod devices;
 
 use std::collections::BTreeSet;
@@ -13,15 +16,18 @@ use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Instant;
 
 use devices::Devices;
 use libtest_mimic::{Arguments, Failed, Trial};
 use triptych_harness::corpus::{self, Entry};
+use triptych_harness::json;
 use triptych_harness::registry::stages;
 use triptych_harness::replay::gpu::Adapter;
 use triptych_harness::replay::{Options, Outcome, replay};
 use triptych_harness::row::{Row, Verdict};
 use triptych_harness::scene::file::SceneFile;
+use triptych_harness::snapshot;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
@@ -49,6 +55,13 @@ fn main() -> ExitCode {
     trials.push(Trial::test("snapshots/every-one-has-a-scene", move || {
         dangling(&snapshots(), &entries)
     }));
+    // The tests of this one run it on a corpus that is not ours.
+    if std::env::var_os("TRIPTYCH_CORPUS").is_none() {
+        trials.push(Trial::test(
+            "contributor/added-reviewed-and-in-shards",
+            contributor::added_reviewed_and_in_shards,
+        ));
+    }
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
@@ -67,7 +80,9 @@ fn missing_mesh(entry: &Entry) -> Option<String> {
 
 fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
     let mut adapters = devices.take()?;
+    let start = Instant::now();
     let outcome = replay(entry, &adapters, &Options::default())?;
+    leave_rows(entry, &outcome, start.elapsed().as_secs_f64())?;
     let mut wrong = judge(&outcome, &adapters);
     if !wrong.is_empty() {
         adapters.spoil();
@@ -87,6 +102,18 @@ fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
         entry.name
     );
     Err(message.into())
+}
+
+/// Leaves the rows where `TRIPTYCH_ROWS` says, in a file of the scene's.
+fn leave_rows(entry: &Entry, outcome: &Outcome, seconds: f64) -> std::io::Result<()> {
+    let Some(folder) = std::env::var_os("TRIPTYCH_ROWS").map(PathBuf::from) else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(&folder)?;
+    let file = folder.join(entry.name.replace('/', "-") + ".json");
+    let mut json = json::Writer::create(&file)?;
+    json.rows(&outcome.rows)?;
+    json.finish(seconds).map(drop)
 }
 
 /// What is wrong with an outcome: rows that diverge, legs that compared nothing and
@@ -160,7 +187,7 @@ fn describe(row: &Row) -> String {
 }
 
 fn snapshots() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots")
+    snapshot::folder(&corpus::root())
 }
 
 /// Holds the facts against `snapshots/<family>/<case>.snap`. A missing snapshot
@@ -174,7 +201,7 @@ fn assert_snapshot(entry: &Entry, outcome: &Outcome) {
     settings.set_omit_expression(true);
     settings.set_description(&outcome.purpose);
     settings.set_input_file(&entry.path);
-    settings.bind(|| insta::assert_yaml_snapshot!(case, facts));
+    settings.bind(|| insta::assert_snapshot!(case, snapshot::text(facts)));
 }
 
 /// Fails for files under `snapshots/` that belong to no scene.

@@ -2,6 +2,8 @@
 //! run.
 
 mod adapters;
+mod add;
+mod bundle;
 mod doctor;
 mod kernel;
 mod list;
@@ -46,6 +48,10 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Put a scene into the corpus, replay it, and leave its snapshot for review
+    Add(add::Args),
+    /// Pack what a machine without a toolchain needs
+    Bundle(bundle::Args),
     /// What is installed, which adapters there are, and what is missing
     Doctor,
     /// The scenes of the corpus
@@ -63,6 +69,8 @@ enum Command {
 /// Runs the command line that the process was given.
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
+        Command::Add(args) => add::run(&args),
+        Command::Bundle(args) => bundle::run(&args),
         Command::Doctor => doctor::run(),
         Command::List(args) => list::run(&args),
         Command::Mutants(args) => mutants::run(&args),

@@ -1,7 +1,9 @@
 //! The harness: corpus, legs, comparison, report. The binary `triptych` is a thin
 //! command line over this library.
 
+pub mod add;
 pub mod again;
+pub mod bundle;
 pub mod cache;
 pub mod calibrate;
 pub mod cause;
@@ -26,6 +28,7 @@ pub mod replay;
 pub mod report;
 pub mod row;
 pub mod scene;
+pub mod snapshot;
 pub mod terminal;
 pub mod text;
 pub mod vector;

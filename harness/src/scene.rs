@@ -142,16 +142,37 @@ pub fn load_from(
     seed: Option<u64>,
 ) -> Result<Loaded, LoadError> {
     let path = &entry.path;
-    let mut digest = Sha256::new();
-    let mut parsed = if corpus::is_mesh(path) {
+    if corpus::is_mesh(path) {
         let mut parsed = parse(path, BARE)?;
         parsed.file.mesh = vec![source::bare(path)];
-        parsed
-    } else {
-        let bytes = intake.read(path, FILE_MAX)?;
-        digest.update(&bytes);
-        parse(path, utf8(path, &bytes)?)?
-    };
+        return of_parsed(intake, entry, seed, parsed, Sha256::new());
+    }
+    let bytes = intake.read(path, FILE_MAX)?;
+    load_text(intake, entry, seed, utf8(path, &bytes)?)
+}
+
+/// Loads a scene whose scene.toml, at the entry's path, is to say this.
+///
+/// # Errors
+/// See [`LoadError`].
+pub fn load_text(
+    intake: &mut Intake,
+    entry: &Entry,
+    seed: Option<u64>,
+    text: &str,
+) -> Result<Loaded, LoadError> {
+    let parsed = parse(&entry.path, text)?;
+    of_parsed(intake, entry, seed, parsed, Sha256::new_with_prefix(text))
+}
+
+/// Loads what a scene file names. The digest has seen the file.
+fn of_parsed(
+    intake: &mut Intake,
+    entry: &Entry,
+    seed: Option<u64>,
+    mut parsed: Parsed<'_>,
+    mut digest: Sha256,
+) -> Result<Loaded, LoadError> {
     if let Some(seed) = seed {
         parsed.file.seed = seed;
     }
@@ -164,7 +185,7 @@ pub fn load_from(
     stats.sha256 = hex(&digest.finalize());
     Ok(Loaded {
         name: entry.name.clone(),
-        bare: corpus::is_mesh(path),
+        bare: corpus::is_mesh(&entry.path),
         family: entry.family.clone(),
         file: parsed.file,
         scene,

@@ -17,13 +17,14 @@ use super::results::Results;
 use super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::cache::Cache;
+use crate::corpus::Entry;
 use crate::dump::Dump;
 use crate::output::{complain, stdout};
 use crate::replay::gpu::{Adapter, Adapters, From};
-use crate::replay::{Options, replay};
+use crate::replay::{Options, Outcome, replay};
 use crate::report::{self, ReportInput, RunInfo};
 use crate::row::Summary;
-use crate::{corpus, embree};
+use crate::{corpus, embree, snapshot};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -71,6 +72,9 @@ pub struct Args {
     /// Write every leg's results as NumPy arrays and images
     #[arg(long, value_name = "DIR")]
     dump: Option<PathBuf>,
+    /// Leave pending snapshots of scenes whose facts are not what theirs says
+    #[arg(long)]
+    snapshot: bool,
     /// Open the report
     #[arg(long)]
     open: bool,
@@ -129,7 +133,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     for entry in &selected {
         results.reporter.scene_started(&entry.name);
         match replay(entry, &adapters, &options) {
-            Ok(outcome) => results.add(entry.argument(&entries), outcome)?,
+            Ok(outcome) => {
+                if args.snapshot {
+                    leave_snapshot(entry, &outcome, &mut results)?;
+                }
+                results.add(entry.argument(&entries), outcome)?;
+            }
             Err(error) => unreadable.push(error),
         }
     }
@@ -148,6 +157,19 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     verdict(&summary)
+}
+
+/// Leaves the scene's snapshot pending, unless it is what the accepted one says.
+fn leave_snapshot(entry: &Entry, outcome: &Outcome, results: &mut Results) -> anyhow::Result<()> {
+    let Some(facts) = &outcome.facts else {
+        return Ok(());
+    };
+    let left = snapshot::leave(&corpus::root(), entry, &outcome.purpose, facts);
+    if let Some(path) = left.context("cannot leave a pending snapshot")? {
+        let remark = format!("pending snapshot: {}", path.display());
+        results.reporter.remark(&remark)?;
+    }
+    Ok(())
 }
 
 /// Writes the report, and ends what the terminal shows.

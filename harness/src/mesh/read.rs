@@ -27,6 +27,7 @@ pub struct Intake<'a> {
     files: Files<'a>,
     /// What may still be read.
     left: u64,
+    taken: Vec<PathBuf>,
 }
 
 impl Intake<'static> {
@@ -35,6 +36,7 @@ impl Intake<'static> {
         Self {
             files: Files::Disk,
             left: BYTES_MAX,
+            taken: Vec::new(),
         }
     }
 }
@@ -45,7 +47,13 @@ impl<'a> Intake<'a> {
         Self {
             files: Files::Memory(files),
             left: BYTES_MAX,
+            taken: Vec::new(),
         }
+    }
+
+    /// The files that were read, in order.
+    pub fn taken(&self) -> &[PathBuf] {
+        &self.taken
     }
 
     /// Whether there is something by that name.
@@ -73,6 +81,7 @@ impl<'a> Intake<'a> {
         };
         let bytes = bytes.ok_or_else(|| error(format!("has more than {}", limits(most, limit))))?;
         self.left -= bytes.len() as u64;
+        self.taken.push(path.to_owned());
         Ok(bytes)
     }
 
