@@ -30,7 +30,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let corpus = corpus::root();
-    let Added { entry, files } = add(&corpus, &args.from, &args.new()?)?;
+    let Added { entry, files } = add(&corpus, &args.from, &args.scene()?)?;
     let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
     writeln!(
         stdout(),
@@ -58,7 +58,7 @@ fn replay_of(scene: &str) -> anyhow::Result<replay::Args> {
 }
 
 impl Args {
-    fn new(&self) -> anyhow::Result<New> {
+    fn scene(&self) -> anyhow::Result<New> {
         let (family, case) = match &self.to {
             Some(to) => match to.split_once('/') {
                 Some((family, case)) => (family.to_owned(), case.to_owned()),
