@@ -1,11 +1,12 @@
 //! The report: one HTML file that needs nothing else, not even a network.
 //!
-//! It works from `file://`, in light and dark, on paper, and without scripts
-//! (which only filter and enlarge). Names, purposes and notes come from files that
+//! It works from `file://`, in light and dark, on paper, by keyboard, and without
+//! scripts: these filter, compare two pictures, and show the lists of a pixel. Names, purposes and notes come from files that
 //! anyone may have written: everything is escaped, and the page's own policy
 //! forbids every other script and every request.
 
 mod base64;
+mod budget;
 mod figures;
 mod glossary;
 mod head;
@@ -13,6 +14,8 @@ mod index;
 mod mutants;
 mod rows;
 mod scene;
+mod viewer;
+mod worst;
 
 use std::borrow::Cow;
 use std::fs;
@@ -22,23 +25,37 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use triptych_spec::scene::Size;
 
 use crate::again::Again;
 use crate::digest;
 use crate::json::{Merged, MutantRun};
 use crate::picture::Image;
+use crate::replay::worst::Worst;
 use crate::row::{Row, Summary, Verdict};
+use crate::sheet::Sheet;
 use crate::text::clean;
 
-const STYLE: &str = include_str!("report/style.css");
-const SCRIPT: &str = include_str!("report/page.js");
+const STYLE: &str = concat!(
+    include_str!("report/style.css"),
+    include_str!("report/viewer.css"),
+    include_str!("report/narrow.css"),
+);
+const SCRIPT: &str = concat!(
+    include_str!("report/sheet.js"),
+    include_str!("report/align.js"),
+    include_str!("report/lists.js"),
+    include_str!("report/looked.js"),
+    include_str!("report/viewer.js"),
+    include_str!("report/page.js"),
+);
 
 /// What a report is made of.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReportInput {
     /// What was run, where and with what.
     pub run: RunInfo,
-    /// The scenes, in the order in which they are shown.
+    /// The scenes; those that diverge are shown first.
     pub scenes: Vec<SceneReport>,
     /// Runs of mutants: what the harness finds where something is wrong.
     pub mutants: Vec<MutantRun>,
@@ -79,8 +96,16 @@ pub struct SceneReport {
     pub purpose: String,
     /// Its rows.
     pub rows: Vec<Row>,
+    /// Size of the target, if it is known.
+    pub size: Option<Size>,
     /// Its pictures, legs first.
     pub pictures: Vec<Picture>,
+    /// Its lists.
+    pub sheets: Vec<Sheet>,
+    /// Pixels that differ, the worst first.
+    pub worst: Worst,
+    /// What is left out of the page, in words.
+    pub left_out: Vec<String>,
     /// What the plan ran and skipped.
     pub plan: Vec<PlanLine>,
     /// The first differences.
@@ -115,7 +140,7 @@ pub struct PlanLine {
 }
 
 /// A difference in words, and where it helps the whole lists side by side.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// What differs; line breaks are kept.
     pub words: String,
@@ -182,6 +207,13 @@ impl ReportInput {
         }
     }
 
+    /// The scenes with their numbers: those that diverge first, then as they came.
+    fn in_order(&self) -> Vec<(usize, &SceneReport)> {
+        let mut scenes: Vec<(usize, &SceneReport)> = self.scenes.iter().enumerate().collect();
+        scenes.sort_by_key(|(_, scene)| scene.verdict() != Verdict::Diverge);
+        scenes
+    }
+
     /// How many scenes have a verdict.
     fn count(&self, verdict: Verdict) -> usize {
         self.scenes
@@ -204,7 +236,7 @@ pub fn write(path: &Path, input: &ReportInput) -> io::Result<()> {
     }
     let mut part = path.as_os_str().to_owned();
     part.push(".part");
-    fs::write(&part, page(input).into_string()).map_err(named)?;
+    fs::write(&part, budget::fit(input, budget::PAGE_BYTES)).map_err(named)?;
     fs::rename(&part, path).map_err(named)
 }
 
@@ -232,7 +264,7 @@ pub fn page(input: &ReportInput) -> Markup {
                     (index::section(input))
                     section aria-labelledby="details" {
                         h2 #details { "Scene by scene" }
-                        @for (i, scene) in input.scenes.iter().enumerate() {
+                        @for (i, scene) in input.in_order() {
                             (scene::section(i, scene))
                         }
                     }
@@ -240,6 +272,7 @@ pub fn page(input: &ReportInput) -> Markup {
                     (head::run(&input.run))
                     (glossary::section())
                 }
+                (head::keys())
                 script { (PreEscaped(SCRIPT)) }
             }
         }

@@ -8,6 +8,7 @@ use super::facts::Facts;
 use super::gpu::Adapter;
 use super::rows::Rows;
 use super::spec::{SpecRun, Times, timed};
+use super::worst::{Errors, Worst};
 use super::{Options, Outcome, embree, pictures};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
@@ -16,6 +17,7 @@ use crate::plan::Plan;
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
+use crate::sheet::{self, Rays, Sheet};
 
 /// Why a replay ends early.
 pub(super) enum Stop {
@@ -41,6 +43,8 @@ pub(super) struct Run<'a> {
     spec: Option<Rc<Observed<Spec, SpecRun>>>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
+    pub(super) sheets: Vec<Sheet>,
+    pub(super) errors: Errors,
     pub(super) saved: Vec<(String, f64)>,
     facts: Option<Facts>,
     remarks: Vec<String>,
@@ -56,6 +60,8 @@ impl<'a> Run<'a> {
             spec: None,
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
+            sheets: Vec::new(),
+            errors: Errors::default(),
             saved: Vec::new(),
             facts: None,
             remarks: loaded.stats.remarks(),
@@ -74,9 +80,11 @@ impl<'a> Run<'a> {
             let reason = "no other leg was asked for".to_owned();
             self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
-        let causes = pictures::causes(self.spec.as_deref(), &self.rows.marks);
+        let causes = pictures::causes(self.spec.as_deref(), &self.rows.spots);
         self.pictures
             .extend(causes.filter(|_| self.options.pictures));
+        let width = self.loaded.scene.size.width;
+        let worst = Worst::of(&self.rows, &self.errors, width);
         self.rows.rows.sort_by_key(column);
         Ok(Outcome {
             name: self.loaded.name.clone(),
@@ -84,11 +92,12 @@ impl<'a> Run<'a> {
             size: Some(self.loaded.scene.size),
             rows: self.rows.rows,
             described: self.rows.described,
-            marks: self.rows.marks,
+            worst,
             plan: Some(self.plan),
             saved: self.saved,
             facts: self.facts,
             pictures: self.pictures,
+            sheets: once(self.sheets),
             remarks: self.remarks,
         })
     }
@@ -129,15 +138,17 @@ impl<'a> Run<'a> {
         if let Some(unit) = cache.get(&key) {
             self.rows.rows.extend(unit.rows);
             self.pictures.extend(unit.pictures);
+            self.sheets.extend(unit.sheets);
             self.saved.extend(unit.saved);
             return Ok(());
         }
         let (rows, pictures) = (self.rows.rows.len(), self.pictures.len());
-        let saved = self.saved.len();
+        let (saved, sheets) = (self.saved.len(), self.sheets.len());
         work(self)?;
         let unit = Unit {
             rows: self.rows.rows[rows..].to_vec(),
             pictures: self.pictures[pictures..].to_vec(),
+            sheets: self.sheets[sheets..].to_vec(),
             saved: self.saved[saved..].to_vec(),
         };
         if let Err(error) = cache.put(&key, &unit) {
@@ -180,6 +191,8 @@ impl<'a> Run<'a> {
         self.facts = Some(Facts::new(self.loaded, &spec.value, &self.plan));
         if self.options.pictures {
             self.pictures.extend(pictures::spec(&spec.value));
+            self.sheets
+                .push(sheet::spec(&self.loaded.scene, &spec.value, &spec.label));
         }
         self.dump_spec(&spec).map_err(Stop::Dump)
     }
@@ -214,13 +227,35 @@ impl<'a> Run<'a> {
         let stated = &self.loaded.file.budget;
         let budget = (!self.loaded.bare).then_some(stated.edge.0);
         let seen = embree::run(&spec, budget, &mut self.rows);
-        if let Some(seen) = seen.filter(|_| self.options.pictures) {
-            let pixels = embree::picture(&self.loaded.scene, &spec.value, &seen);
-            self.pictures
-                .push(pictures::leg("embree", self.loaded.scene.size, &pixels));
+        if let Some((embree, unlike)) = seen.filter(|_| self.options.pictures) {
+            let (scene, spec) = (&self.loaded.scene, &spec.value);
+            let seen = embree::look(scene, spec, &embree);
+            self.shown("embree", spec, &seen.picture);
+            let rays = Rays::new(scene, spec, &embree);
+            self.sheets.push(rays.sheet(&seen, &unlike));
         }
         Ok(())
     }
+
+    /// Keeps a leg's picture, and how far it is from the spec's.
+    pub(super) fn shown(&mut self, label: &str, spec: &SpecRun, picture: &[[f32; 3]]) {
+        let size = self.loaded.scene.size;
+        self.pictures.push(pictures::leg(label, size, picture));
+        let difference = pictures::difference(label, size, &spec.picture(), picture);
+        self.pictures.extend(difference);
+    }
+}
+
+/// Each leg's own work brings the spec's lists that it was held against, as it may come
+/// from the cache alone.
+fn once(sheets: Vec<Sheet>) -> Vec<Sheet> {
+    let mut kept: Vec<Sheet> = Vec::new();
+    for sheet in sheets {
+        if !kept.iter().any(|k| k.is_like(&sheet)) {
+            kept.push(sheet);
+        }
+    }
+    kept
 }
 
 /// Where a row stands: closed form, Embree, then GPU legs by name.

@@ -58,10 +58,8 @@ fn figure(scene: &str, group: &[&Picture]) -> Markup {
     let titles: Vec<_> = group.iter().map(|p| clean(&p.title)).collect();
     let alt = format!("{} of {}: {}", titles[0], clean(scene), clean(caption));
     html! {
-        figure {
-            button.zoom type="button" aria-label={"Enlarge: " (titles[0])} {
-                (img(image, &alt))
-            }
+        figure data-title=(titles.join(", ")) {
+            div.shot { (img(image, &alt)) }
             figcaption {
                 @for (i, title) in titles.iter().enumerate() {
                     @if i > 0 { ", " }
