@@ -104,9 +104,9 @@ pub enum Kind {
 pub type Pixel = (u32, Vec<Vec<Entry>>);
 
 impl Sheet {
-    /// Whether two sheets are of the same leg on the same grid.
+    /// Whether two sheets hold the same pixels of the same leg on the same grid.
     pub fn is_like(&self, other: &Self) -> bool {
-        (&self.leg, self.bits) == (&other.leg, other.bits)
+        (&self.leg, self.bits, self.stride) == (&other.leg, other.bits, other.stride)
     }
 
     /// Whether it holds what a GPU leg does otherwise than the spec.

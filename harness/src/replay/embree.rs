@@ -1,5 +1,6 @@
 //! The Embree leg of one scene.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use triptych_spec::scene::Scene;
@@ -17,7 +18,7 @@ pub fn run(
     spec: &Observed<Spec, SpecRun>,
     edge_budget: Option<f64>,
     rows: &mut Rows,
-) -> Option<(EmbreeScene, Vec<u32>)> {
+) -> Option<(EmbreeScene, BTreeSet<u32>)> {
     let primitives = &spec.value.primitives;
     if primitives.prims.is_empty() {
         let reason = "no triangles reach the rasteriser".to_owned();
@@ -36,7 +37,7 @@ pub fn run(
         }
     };
     let embree = Observed::<Embree, _>::new("embree", scene);
-    let mut vote = Ok(Vec::new());
+    let mut vote = Ok(BTreeSet::new());
     let judgement = compare(spec, &embree, |spec, scene| match compare::embree::compare(
         &spec.primitives,
         scene,

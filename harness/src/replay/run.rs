@@ -1,5 +1,6 @@
 //! One scene under way.
 
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use triptych_spec::vertex::{self, SUBPIXEL_BITS};
@@ -12,6 +13,7 @@ use super::worst::{Errors, Worst};
 use super::{Options, Outcome, embree, pictures};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
+use crate::embree::EmbreeScene;
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
 use crate::report::Picture;
@@ -45,6 +47,8 @@ pub(super) struct Run<'a> {
     pub(super) pictures: Vec<Picture>,
     pub(super) sheets: Vec<Sheet>,
     pub(super) errors: Errors,
+    /// The first pixels at which Embree disagrees.
+    unlike: BTreeSet<u32>,
     pub(super) saved: Vec<(String, f64)>,
     facts: Option<Facts>,
     remarks: Vec<String>,
@@ -62,6 +66,7 @@ impl<'a> Run<'a> {
             pictures: Vec::new(),
             sheets: Vec::new(),
             errors: Errors::default(),
+            unlike: BTreeSet::new(),
             saved: Vec::new(),
             facts: None,
             remarks: loaded.stats.remarks(),
@@ -85,6 +90,9 @@ impl<'a> Run<'a> {
             .extend(causes.filter(|_| self.options.pictures));
         let width = self.loaded.scene.size.width;
         let worst = Worst::of(&self.rows, &self.errors, width);
+        if self.options.pictures && self.options.embree {
+            self.look_again(&worst)?;
+        }
         self.rows.rows.sort_by_key(column);
         Ok(Outcome {
             name: self.loaded.name.clone(),
@@ -232,7 +240,26 @@ impl<'a> Run<'a> {
             let seen = embree::look(scene, spec, &embree);
             self.shown("embree", spec, &seen.picture);
             let rays = Rays::new(scene, spec, &embree);
-            self.sheets.push(rays.sheet(&seen, &unlike));
+            self.sheets.push(rays.sheet(&seen));
+            self.unlike = unlike;
+        }
+        Ok(())
+    }
+
+    /// Asks Embree for the pixels that people will look at first. Which these are is known
+    /// in the end, when its scene has made room; where all agree there are none.
+    fn look_again(&mut self, worst: &Worst) -> Result<(), Stop> {
+        let width = self.loaded.scene.size.width;
+        let mut pixels = std::mem::take(&mut self.unlike);
+        pixels.extend(worst.pixels.iter().map(|p| p.at[1] * width + p.at[0]));
+        if pixels.is_empty() {
+            return Ok(());
+        }
+        let spec = self.spec(SUBPIXEL_BITS)?;
+        // What Embree refuses now it refused before, which has a row.
+        if let Ok(embree) = EmbreeScene::new(&spec.value.primitives) {
+            let rays = Rays::new(&self.loaded.scene, &spec.value, &embree);
+            self.sheets.push(rays.sheet_of(&pixels));
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::{ReportInput, SceneReport, sign, text, verdict_name};
 use crate::digest::{self, Pair, column_order, leg_parts};
 use crate::row::Verdict;
-use crate::text::{clean, count, share};
+use crate::text::{clean, compact, count, share};
 
 /// All scenes, one line each, one column per pair of legs; those of [`digest::PLAN`]
 /// share one.
@@ -101,7 +101,8 @@ fn line(i: usize, scene: &SceneReport, pairs: &[(&str, &str)]) -> Markup {
 fn cell(pair: &Pair<'_>) -> Markup {
     match pair.verdict() {
         Verdict::Agree => html! {
-            span.agree role="img" aria-label="agrees," { "✓" } " " (count(pair.compared()))
+            span.agree role="img" aria-label="agrees," { "✓" } " "
+            span title=(count(pair.compared())) { (compact(pair.compared())) }
         },
         Verdict::Diverge => html! {
             strong.diverge { span role="img" aria-label="diverges," { "✗" } " "

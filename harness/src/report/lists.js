@@ -36,14 +36,14 @@ function entryCell(entry) {
     cell.append(make("span", { className: "key" }, "…"));
     return cell;
   }
-  const depth = (entry.key / 0x7fffffff).toFixed(7);
+  const depth = (entry.key / 0x7fffffff).toFixed(6);
   const mask = entry.kind === KIND.OPAQUE ? "opaque" : entry.mask ? `mask ${entry.mask}` : "";
   const source = entry.source < 0xffffffff ? `triangle ${entry.source} of instance ${entry.instance}` : "no such triangle";
   cell.append(
     swatch(entry.colour),
     make("b", { title: source }, `prim ${entry.prim}`),
     make("span", { className: "key", title: "depth key" }, `key ${entry.key}`),
-    make("span", { className: "rest" }, [depth, mask, `α ${Number(entry.colour[3].toPrecision(4))}`].filter(Boolean).join(" · ")),
+    ...[depth, mask, `α ${Number(entry.colour[3].toPrecision(2))}`].filter(Boolean).map((words) => make("span", { className: "rest" }, words)),
   );
   return cell;
 }

@@ -21,6 +21,18 @@ async function pairAt(viewer, leg, pixel) {
   return { must: must ?? null, list: leg ? (must ?? null) : null, base };
 }
 
+// Embree's hits along a pixel's ray. It may have a sheet of what differs beside that of
+// every so many pixels.
+async function hitsAt(viewer, pixel) {
+  const sheets = viewer.sheets.filter((sheet) => sheet.leg === "embree");
+  for (const embree of sheets) {
+    const hits = (await embree.load()).get(pixel)?.[0];
+    if (hits) return { embree, hits };
+  }
+  const empty = sheets.find((sheet) => isHeld(sheet, viewer.at));
+  return { embree: empty ?? sheets[0], hits: empty ? [] : null };
+}
+
 // What is known of a leg whose list is not in its own sheet.
 function equalNote(leg, has) {
   if (!has) return "";
@@ -28,10 +40,14 @@ function equalNote(leg, has) {
   return "Equal to the spec's, bit for bit.";
 }
 
-function legChoice(viewer, leg) {
+async function legChoice(viewer, leg, pixel) {
   const legs = viewer.sheets.filter((sheet) => sheet.against);
-  const options = legs.map((sheet) => make("option", { selected: sheet === leg }, sheet.leg));
-  const choice = make("select", { className: "leg", ariaLabel: "GPU leg" }, ...options);
+  const options = [];
+  for (const sheet of legs) {
+    const differs = (await sheet.load()).has(pixel) ? " ≠" : "";
+    options.push(make("option", { selected: sheet === leg }, sheet.leg.replace(/^gpu@/, "") + differs));
+  }
+  const choice = make("select", { className: "leg", ariaLabel: "GPU leg", title: leg.leg }, ...options);
   choice.addEventListener("change", () => {
     viewer.leg = legs[choice.selectedIndex];
     viewer.look();
@@ -41,8 +57,8 @@ function legChoice(viewer, leg) {
 
 // The picture of a leg, to look at through a loupe.
 function pictureOf(viewer, label) {
-  const figure = viewer.figures.find((f) => f.dataset.title.split(", ").includes(label));
-  return figure?.querySelector("img");
+  const at = viewer.titles.findIndex((titles) => titles.includes(label));
+  return viewer.figures[at]?.querySelector("img");
 }
 
 function heading(viewer, title, label, notes) {
@@ -66,9 +82,8 @@ async function listsOf(viewer) {
   const [x, y] = viewer.at;
   const pixel = y * viewer.size[0] + x;
   const leg = await legAt(viewer, pixel);
-  const embree = viewer.sheets.find((sheet) => sheet.leg === "embree");
+  const { embree, hits } = await hitsAt(viewer, pixel);
   const { must, list, base } = await pairAt(viewer, leg, pixel);
-  const hits = embree && ((await embree.load()).get(pixel)?.[0] ?? (isHeld(embree, viewer.at) ? [] : null));
   if (!must && base) return leftOut(viewer, base);
   if (!must) return make("p", { className: "skipped" }, "There are no lists of this scene in this file.");
   const rows = align(must, [{ list, isGpu: true }, { list: hits ?? null, isGpu: false }]);
@@ -83,7 +98,7 @@ async function listsOf(viewer) {
     {},
     make("th", { scope: "col" }, "#"),
     heading(viewer, leg?.against || "spec", "spec", [count(must), grid]),
-    heading(viewer, leg ? legChoice(viewer, leg) : "no GPU leg", leg?.leg, leg ? [count(list), isOwn ? leg.note : equalNote(leg, list)] : []),
+    heading(viewer, leg ? await legChoice(viewer, leg, pixel) : "no GPU leg", leg?.leg, leg ? [count(list), isOwn ? leg.note : equalNote(leg, list)] : []),
     heading(viewer, embree ? "embree" : "no Embree", "embree", embree ? [hits ? count(hits.filter((h) => h.kind < KIND.MISSED)) : `Left out to keep the file small: each ${embree.stride}th column and row is held.`] : []),
   );
   const table = make("table", { className: "threes" }, caption, make("thead", {}, head), bodyOf(rows, false, () => all()));

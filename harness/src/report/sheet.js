@@ -74,11 +74,13 @@ async function unpack(base64) {
   return new Map(numbers.map((n, i) => [n, all.slice(i * lists, (i + 1) * lists)]));
 }
 
-// A sheet of the page: what its attributes say, and the lists when asked for.
-function sheetOf(template) {
-  const { leg, against, bits, stride, leftOut, note } = template.dataset;
+// A sheet of the page: what its attributes say, and the lists when asked for. `sheets`
+// are those of the scene, as one may have its lists in another.
+function sheetOf(template, _, sheets) {
+  const { leg, against, bits, stride, leftOut, note, like } = template.dataset;
   let lists = null;
-  const load = () => (lists ??= template.content.textContent ? unpack(template.content.textContent) : Promise.resolve(new Map()));
+  const base64 = (like ? sheets[like] : template).content.textContent;
+  const load = () => (lists ??= base64 ? unpack(base64) : Promise.resolve(new Map()));
   return { leg, against, bits, stride: Number(stride), leftOut: Number(leftOut), note, load };
 }
 

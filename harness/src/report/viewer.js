@@ -9,7 +9,9 @@ class Viewer {
     this.root = scene.querySelector(".viewer");
     this.size = [Number(this.root.dataset.width), Number(this.root.dataset.height)];
     this.part = (name) => this.root.querySelector(`.${name}`);
-    this.figures = [...scene.querySelectorAll("figure[data-title]")];
+    this.figures = [...scene.querySelectorAll("figure[data-titles]")];
+    // No title holds a line break.
+    this.titles = this.figures.map((figure) => figure.dataset.titles.split("\n"));
     this.sheets = [...this.root.querySelectorAll("template.sheet")].map(sheetOf);
     this.at = this.firstPixel();
     this.zoom = 1;
@@ -31,14 +33,14 @@ class Viewer {
   // A picture on each side: the spec, and the first leg that differs, or the first leg.
   choices() {
     for (const side of ["left", "right"]) {
-      const options = this.figures.map((figure, i) => make("option", { value: i }, figure.dataset.title));
-      this.part(side).append(...options);
+      this.part(side).append(...this.titles.map((titles, i) => make("option", { value: i }, titles.join(", "))));
     }
-    const titled = (test) => Math.max(0, this.figures.findIndex((figure) => test(figure.dataset.title)));
-    const differs = this.figures.find((figure) => figure.dataset.title.startsWith("difference of gpu"));
-    const leg = differs?.dataset.title.slice("difference of ".length);
-    this.part("left").value = titled((title) => title === "spec");
-    this.part("right").value = titled((title) => (leg ? title.split(", ").includes(leg) : title !== "spec"));
+    const DIFFERENCE = "difference of ";
+    const differs = this.titles.flat().find((title) => title.startsWith(`${DIFFERENCE}gpu`));
+    const leg = differs?.slice(DIFFERENCE.length);
+    const find = (test) => Math.max(0, this.titles.findIndex((titles) => titles.some(test)));
+    this.part("left").value = find((title) => title === "spec");
+    this.part("right").value = find((title) => (leg ? title === leg : title !== "spec"));
   }
 
   listen() {
@@ -49,7 +51,7 @@ class Viewer {
     this.part("in").addEventListener("click", () => this.scale(2));
     this.part("out").addEventListener("click", () => this.scale(1 / 2));
     this.part("canvas").addEventListener("click", (event) => this.click(event));
-    this.part("look").addEventListener("click", () => this.look());
+    this.part("look").addEventListener("click", () => this.lookAt(this.at));
     for (const axis of ["column", "row"]) {
       this.part(axis).addEventListener("change", () => this.move([this.part("column").valueAsNumber || 0, this.part("row").valueAsNumber || 0]));
     }
@@ -94,7 +96,8 @@ class Viewer {
   // As wide as there is room, but no higher than most of the window.
   fit() {
     const [width, height] = this.size;
-    const room = this.part("stage").clientWidth;
+    const room = this.part("room").clientWidth;
+    if (room === 0) return;
     this.width = Math.max(1, Math.min(room, (innerHeight * 0.62 * width) / height));
     this.resize();
   }
@@ -106,6 +109,7 @@ class Viewer {
 
   resize() {
     const [canvas, stage] = [this.part("canvas"), this.part("stage")];
+    this.part("split").style.width = `${this.width}px`;
     canvas.style.width = `${this.width * this.zoom}px`;
     canvas.style.aspectRatio = `${this.size[0]} / ${this.size[1]}`;
     this.part("factor").value = `${this.zoom}×`;
@@ -151,9 +155,12 @@ class Viewer {
     this.lookAt(along.map((part, i) => part * this.size[i]));
   }
 
-  lookAt(at) {
-    this.isOpen = true;
+  // Moves to a pixel and shows its lists, which come into sight.
+  async lookAt(at) {
+    this.isOpen = false;
     this.move(at);
+    await this.look();
+    this.part("lists").scrollIntoView({ block: "nearest" });
   }
 
   key(event) {
@@ -163,7 +170,7 @@ class Viewer {
       const by = event.shiftKey ? 10 : 1;
       this.move(this.at.map((n, i) => n + by * step[i]));
     } else if (event.key === "Enter") {
-      this.look();
+      this.lookAt(this.at);
     } else {
       return;
     }

@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 use super::scene::differences;
-use super::{SceneReport, base64, text};
+use super::{Difference, SceneReport, base64, text};
 use crate::sheet::Sheet;
 use crate::text::{clean, count, plural};
 
@@ -27,39 +27,47 @@ pub fn viewer(scene: &SceneReport) -> Markup {
                 label { "Row " input.row type="number" min="0" max=(size.height - 1) value="0"; }
                 button.look type="button" { "Show lists" }
             }
-            div.stage tabindex="0" role="group"
-                aria-label="Pictures: arrow keys move the cursor, Enter shows the lists" {
-                div.canvas { img.under alt=""; img.over alt=""; span.divider {} span.cursor {} }
+            div.both {
+                div.room {
+                    div.stage tabindex="0" role="group"
+                        aria-label="Pictures: arrow keys move the cursor, Enter shows the lists" {
+                        div.canvas { img.under alt=""; img.over alt=""; span.divider {} span.cursor {} }
+                    }
+                    input.split type="range" min="0" max="1000" value="500"
+                        aria-label="How much of the left picture is shown";
+                    p.here aria-live="polite" {}
+                }
+                div.lists.scroll tabindex="0" role="region" aria-label="Lists of the pixel" {
+                    p.soft { "Click on a pixel of any picture: its three lists appear here." }
+                }
             }
-            input.split type="range" min="0" max="1000" value="500"
-                aria-label="How much of the left picture is shown";
-            p.here aria-live="polite" {}
-            div.lists.scroll tabindex="0" role="region" aria-label="Lists of the pixel" {
-                p.soft { "Click on a pixel of any picture: its three lists appear here." }
-            }
-            @for sheet in &scene.sheets { (template(sheet)) }
+            @for (i, sheet) in scene.sheets.iter().enumerate() { (template(sheet, &scene.sheets[..i])) }
         }
     }
 }
 
-/// The lists, for the script. A template is neither shown nor run.
-fn template(sheet: &Sheet) -> Markup {
+/// The lists, for the script. A template is neither shown nor run. Legs that differ alike
+/// have their lists in the first one's.
+fn template(sheet: &Sheet, before: &[Sheet]) -> Markup {
+    let like = before.iter().position(|other| other.data == sheet.data);
     html! {
         template.sheet data-leg=(clean(&sheet.leg)) data-against=(clean(&sheet.against))
             data-bits=(sheet.bits) data-stride=(sheet.stride) data-left-out=(sheet.left_out)
-            data-note=(clean(&sheet.note)) { (base64::encode(&sheet.data)) }
+            data-note=(clean(&sheet.note)) data-like=[like] {
+            @if like.is_none() { (base64::encode(&sheet.data)) }
+        }
     }
 }
 
 /// What the file holds of the lists, and what not; and the worst pixels' in words.
 pub fn held(scene: &SceneReport) -> Markup {
+    let worst = scene.sheets.iter().filter_map(|s| s.worst.clone());
+    let worst: Vec<Difference> = worst.collect();
     html! {
-        @for sheet in scene.sheets.iter().filter(|s| s.is_gpu()) {
-            @if let Some(worst) = &sheet.worst {
-                details.words {
-                    summary { "Lists of the worst pixel of " (text(&sheet.leg)) ", as text" }
-                    (differences(std::slice::from_ref(worst)))
-                }
+        @if !worst.is_empty() {
+            details.words {
+                summary { "The worst pixel of each GPU leg, as text" }
+                (differences(&worst))
             }
         }
         @let thinned: Vec<&Sheet> = scene.sheets.iter().filter(|s| s.left_out > 0).collect();

@@ -6,7 +6,7 @@ use super::{SceneReport, text};
 use crate::digest::{self, column_order};
 use crate::replay::worst::{Worst, WorstPixel};
 use crate::row::{Row, Verdict};
-use crate::text::{count, plural};
+use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
@@ -90,6 +90,20 @@ pub fn table(worst: &Worst) -> Markup {
 
 fn line(pixel: &WorstPixel) -> Markup {
     let [x, y] = pixel.at;
+    let all = pixel
+        .seen_by
+        .iter()
+        .map(|(stage, leg)| format!("{} of {}", clean(stage), clean(leg)));
+    let all: Vec<String> = all.collect();
+    let mut legs: Vec<(&str, u64)> = Vec::new();
+    for (stage, _) in &pixel.seen_by {
+        match legs.iter_mut().find(|(known, _)| known == stage) {
+            Some((_, n)) => *n += 1,
+            None => legs.push((stage, 1)),
+        }
+    }
+    let stage = |(stage, n): (&str, u64)| format!("{} ({})", clean(stage), plural(n, "leg"));
+    let stages: Vec<String> = legs.into_iter().map(stage).collect();
     html! {
         tr {
             td { span.pixel data-at={(x) "," (y)} { (x) ", " (y) } }
@@ -99,10 +113,7 @@ fn line(pixel: &WorstPixel) -> Markup {
                 a href={"#cause-" (cause.name())} { (cause.name()) } " " (count(*n))
             } }
             td.n { @if let Some(error) = pixel.error { (colour(error)) } }
-            td.remark { @for (i, (stage, leg)) in pixel.seen_by.iter().enumerate() {
-                @if i > 0 { "; " }
-                (text(stage)) " " span.path { (text(leg)) }
-            } }
+            td title=(all.join("; ")) { (stages.join(", ")) }
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What Embree reports along the rays.
 
+use std::collections::BTreeSet;
+
 use triptych_spec::raster::sample;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::SUBPIXEL_BITS;
@@ -37,34 +39,40 @@ impl<'a> Rays<'a> {
     }
 
     /// All hits along the rays, and what of the spec's they lack. `seen` says how many
-    /// there are; `unlike` are pixels that must be held, as Embree disagrees there.
-    pub fn sheet(&self, seen: &EmbreeSeen, unlike: &[u32]) -> Sheet {
+    /// there are.
+    pub fn sheet(&self, seen: &EmbreeSeen) -> Sheet {
         let size = self.spec.primitives.size;
         let mut stride = stride(seen.hits, ENTRIES);
         loop {
-            let mut numbers: Vec<u32> = lattice(size, stride)
-                .chain(unlike.iter().copied())
-                .collect();
-            numbers.sort_unstable();
-            numbers.dedup();
-            let lists = numbers.into_iter().map(|n| (n, vec![self.list(n)]));
-            let pixels: Vec<Pixel> = lists.filter(|(_, lists)| !lists[0].is_empty()).collect();
-            let data = pack(&pixels, 1);
-            // Eight pixels at most are unlike, so that this ends.
-            if data.len() <= EMBREE_BYTES || stride > size.width.max(size.height) {
-                let held = pixels.len() as u64;
+            let sheet = self.of(lattice(size, stride));
+            // One ray's hits that are too many end this with that ray.
+            if sheet.data.len() <= EMBREE_BYTES || stride > size.width.max(size.height) {
+                // A pixel may be held for what Embree lacks alone.
+                let left_out = seen.pixels.saturating_sub(sheet.held);
                 return Sheet {
-                    leg: "embree".into(),
-                    bits: self.spec.primitives.bits,
                     stride,
-                    held,
-                    // A pixel may be held for what Embree lacks alone.
-                    left_out: seen.pixels.saturating_sub(held),
-                    data,
-                    ..Sheet::default()
+                    left_out,
+                    ..sheet
                 };
             }
             stride *= 2;
+        }
+    }
+
+    /// The same of single pixels, which differ: they are few.
+    pub fn sheet_of(&self, pixels: &BTreeSet<u32>) -> Sheet {
+        self.of(pixels.iter().copied())
+    }
+
+    fn of(&self, numbers: impl Iterator<Item = u32>) -> Sheet {
+        let lists = numbers.map(|n| (n, vec![self.list(n)]));
+        let pixels: Vec<Pixel> = lists.filter(|(_, lists)| !lists[0].is_empty()).collect();
+        Sheet {
+            leg: "embree".into(),
+            bits: self.spec.primitives.bits,
+            held: pixels.len() as u64,
+            data: pack(&pixels, 1),
+            ..Sheet::default()
         }
     }
 

@@ -15,7 +15,7 @@ use crate::replay::spec::SpecRun;
 use crate::report::Difference;
 
 /// Entries that are packed at most, the spec's and the leg's together.
-const ENTRIES: usize = 20_000;
+const ENTRIES: usize = 80_000;
 
 /// The pixels at which a leg's lists differ from the spec's, with both lists; the worst
 /// ones if they are too many.
