@@ -98,6 +98,8 @@ impl Worst {
 
 #[cfg(test)]
 mod tests {
+    use triptych_spec::bound::Real;
+
     use super::*;
     use crate::replay::rows::Spot;
 
