@@ -11,6 +11,7 @@ mod legs;
 pub mod pictures;
 pub mod rows;
 mod run;
+mod shown;
 pub mod skips;
 pub mod spec;
 pub mod vertex;

@@ -1,24 +1,20 @@
 //! The GPU legs of one scene: every adapter and path.
 
-use std::collections::BTreeSet;
-
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
-use triptych_spec::vertex::SUBPIXEL_BITS;
 
-use super::gpu::{Adapter, Broken, From, GpuLeg, GpuSeen};
+use super::gpu::{Adapter, Broken, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
 use super::{Options, end_to_end, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
-use crate::observe::{Gpu, Observed, Spec};
+use crate::observe::{Observed, Spec};
 use crate::row::Class;
 use crate::scene::value::Capacity;
-use crate::sheet::{self, Sheet};
 
 impl Run<'_> {
     /// Every adapter and path; legs that share a sub-pixel grid follow each other.
@@ -172,33 +168,6 @@ impl Run<'_> {
             self.keep(&leg, &seen, spots);
         }
         Ok(self.dump_gpu(&leg.spec.value, &seen))
-    }
-
-    /// Keeps a leg's picture and lists for the report. Spots from `first` on are its own.
-    fn keep(&mut self, leg: &GpuLeg<'_>, seen: &Observed<Gpu, GpuSeen>, first: usize) {
-        let (spec, image) = (&leg.spec.value, &seen.value.abuffer.image);
-        if !image.is_empty() {
-            self.shown(&seen.label, spec, image);
-        }
-        let pixels: BTreeSet<u32> = self.rows.spots[first..].iter().map(|s| s.pixel).collect();
-        self.errors.note(&pixels, &spec.image, image);
-        if leg.by_band() {
-            return;
-        }
-        // The spec's own sheet is that of its own vertices, on the finest grid.
-        let own = self.options.from >= From::Cover;
-        let against = match own {
-            true => "spec".to_owned(),
-            false => format!("spec on the vertices of {}", seen.label),
-        };
-        if !own || spec.primitives.bits != SUBPIXEL_BITS {
-            let new = |s: &&Sheet| (&s.leg, s.bits) == (&against, spec.primitives.bits);
-            let known = self.sheets.iter().find(new).cloned();
-            let pack = || sheet::spec(leg.scene, spec, &against);
-            self.sheets.push(known.unwrap_or_else(pack));
-        }
-        let own = sheet::gpu(leg.scene, spec, &against, &seen.label, &seen.value);
-        self.sheets.push(own);
     }
 
     /// The spec's later stages on the GPU's own vertices, where these are wanted and

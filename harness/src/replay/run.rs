@@ -10,10 +10,9 @@ use super::gpu::Adapter;
 use super::rows::Rows;
 use super::spec::{SpecRun, Times, timed};
 use super::worst::{Errors, Worst};
-use super::{Options, Outcome, embree, pictures};
+use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
-use crate::embree::EmbreeScene;
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
 use crate::report::Picture;
@@ -48,7 +47,7 @@ pub(super) struct Run<'a> {
     pub(super) sheets: Vec<Sheet>,
     pub(super) errors: Errors,
     /// The first pixels at which Embree disagrees.
-    unlike: BTreeSet<u32>,
+    pub(super) unlike: BTreeSet<u32>,
     pub(super) saved: Vec<(String, f64)>,
     facts: Option<Facts>,
     remarks: Vec<String>,
@@ -105,7 +104,7 @@ impl<'a> Run<'a> {
             saved: self.saved,
             facts: self.facts,
             pictures: self.pictures,
-            sheets: once(self.sheets),
+            sheets: shown::once(self.sheets),
             remarks: self.remarks,
         })
     }
@@ -245,44 +244,6 @@ impl<'a> Run<'a> {
         }
         Ok(())
     }
-
-    /// Asks Embree for the pixels that people will look at first. Which these are is known
-    /// in the end, when its scene has made room; where all agree there are none.
-    fn look_again(&mut self, worst: &Worst) -> Result<(), Stop> {
-        let width = self.loaded.scene.size.width;
-        let mut pixels = std::mem::take(&mut self.unlike);
-        pixels.extend(worst.pixels.iter().map(|p| p.at[1] * width + p.at[0]));
-        if pixels.is_empty() {
-            return Ok(());
-        }
-        let spec = self.spec(SUBPIXEL_BITS)?;
-        // What Embree refuses now it refused before, which has a row.
-        if let Ok(embree) = EmbreeScene::new(&spec.value.primitives) {
-            let rays = Rays::new(&self.loaded.scene, &spec.value, &embree);
-            self.sheets.push(rays.sheet_of(&pixels));
-        }
-        Ok(())
-    }
-
-    /// Keeps a leg's picture, and how far it is from the spec's.
-    pub(super) fn shown(&mut self, label: &str, spec: &SpecRun, picture: &[[f32; 3]]) {
-        let size = self.loaded.scene.size;
-        self.pictures.push(pictures::leg(label, size, picture));
-        let difference = pictures::difference(label, size, &spec.picture(), picture);
-        self.pictures.extend(difference);
-    }
-}
-
-/// Each leg's own work brings the spec's lists that it was held against, as it may come
-/// from the cache alone.
-fn once(sheets: Vec<Sheet>) -> Vec<Sheet> {
-    let mut kept: Vec<Sheet> = Vec::new();
-    for sheet in sheets {
-        if !kept.iter().any(|k| k.is_like(&sheet)) {
-            kept.push(sheet);
-        }
-    }
-    kept
 }
 
 /// Where a row stands: closed form, Embree, then GPU legs by name.
