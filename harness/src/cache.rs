@@ -18,6 +18,7 @@ use sha2::{Digest, Sha256};
 
 use crate::report::Picture;
 use crate::row::{Row, Verdict};
+use crate::sheet::Sheet;
 use crate::text::hex;
 use code::Code;
 pub use code::Uses;
@@ -32,6 +33,8 @@ pub struct Unit {
     pub rows: Vec<Row>,
     /// Its pictures; their PNGs are files of their own.
     pub pictures: Vec<Picture>,
+    /// Its lists; their bytes are files of their own.
+    pub sheets: Vec<Sheet>,
     /// Legs of which skipping was tested, and the milliseconds that it saved.
     pub saved: Vec<(String, f64)>,
 }
@@ -90,6 +93,9 @@ impl Cache {
         for (i, picture) in unit.pictures.iter_mut().enumerate() {
             picture.image.png = fs::read(dir.join(png(i))).ok()?;
         }
+        for (i, sheet) in unit.sheets.iter_mut().enumerate() {
+            sheet.data = fs::read(dir.join(lists(i))).ok()?;
+        }
         for row in &mut unit.rows {
             row.cached = true;
         }
@@ -117,6 +123,9 @@ impl Cache {
         for (i, picture) in unit.pictures.iter().enumerate() {
             fs::write(new.join(png(i)), &picture.image.png)?;
         }
+        for (i, sheet) in unit.sheets.iter().enumerate() {
+            fs::write(new.join(lists(i)), &sheet.data)?;
+        }
         fs::write(new.join(UNIT), serde_json::to_vec(unit)?)?;
         let entry = self.dir.join(key);
         if entry.exists() {
@@ -130,6 +139,10 @@ const UNIT: &str = "unit.json";
 
 fn png(i: usize) -> String {
     format!("{i}.png")
+}
+
+fn lists(i: usize) -> String {
+    format!("{i}.lists")
 }
 
 fn prune(dir: &Path) -> io::Result<()> {

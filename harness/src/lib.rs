@@ -29,6 +29,7 @@ pub mod report;
 pub mod row;
 pub mod scene;
 pub mod snapshot;
+pub mod sheet;
 pub mod terminal;
 pub mod text;
 pub mod vector;

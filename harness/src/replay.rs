@@ -11,15 +11,16 @@ mod legs;
 pub mod pictures;
 pub mod rows;
 mod run;
+mod shown;
 pub mod skips;
 pub mod spec;
 pub mod vertex;
+pub mod worst;
 
 use triptych_gpu::raster::Path;
 use triptych_spec::scene::Size;
 
 use crate::cache::Cache;
-use crate::cause::Cause;
 use crate::corpus::Entry;
 use crate::dump::Dump;
 use crate::error::InputError;
@@ -27,10 +28,12 @@ use crate::plan::Plan;
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{LoadError, load_entry};
+use crate::sheet::Sheet;
 use facts::Facts;
 use gpu::{Adapter, Broken, From};
 use rows::Rows;
 use run::{Run, Stop};
+use worst::Worst;
 
 /// What to replay, and how.
 #[derive(Clone, Debug)]
@@ -51,7 +54,7 @@ pub struct Options {
     pub seed: Option<u64>,
     /// Write every leg's results here.
     pub dump: Option<Dump>,
-    /// Keep the legs' pictures for a report.
+    /// Keep the legs' pictures and lists for a report.
     pub pictures: bool,
     /// Where results of legs are kept that need not run again.
     pub cache: Option<Cache>,
@@ -86,8 +89,8 @@ pub struct Outcome {
     pub rows: Vec<Row>,
     /// First differences, in words.
     pub described: Vec<String>,
-    /// Pixels that differ.
-    pub marks: Vec<(u32, Cause)>,
+    /// Pixels that differ, the worst first.
+    pub worst: Worst,
     /// What ran.
     pub plan: Option<Plan>,
     /// GPU legs of which skipping was tested, and the milliseconds that it saved.
@@ -96,6 +99,8 @@ pub struct Outcome {
     pub facts: Option<Facts>,
     /// Pictures of the legs, then maps.
     pub pictures: Vec<Picture>,
+    /// Lists of the legs.
+    pub sheets: Vec<Sheet>,
     /// What is beside the point but should be known: what loading left out of a mesh,
     /// a cache that cannot be written.
     pub remarks: Vec<String>,
@@ -134,11 +139,12 @@ impl Outcome {
             size: None,
             rows: rows.rows,
             described: rows.described,
-            marks: rows.marks,
+            worst: Worst::default(),
             plan: None,
             saved: Vec::new(),
             facts: None,
             pictures: Vec::new(),
+            sheets: Vec::new(),
             remarks: Vec::new(),
         }
     }

@@ -59,7 +59,9 @@ fn files_are_short() {
         (lines > FILE_LINES_MAX)
             .then(|| format!("{}: {lines} lines, at most {FILE_LINES_MAX}", f.name))
     };
-    assert_none(&code().iter().filter_map(long).collect::<Vec<_>>());
+    let mut files = files();
+    files.retain(|f| ["rs", "wgsl", "js", "css"].contains(&f.extension()));
+    assert_none(&files.iter().filter_map(long).collect::<Vec<_>>());
 }
 
 #[test]

@@ -94,7 +94,11 @@ pub fn scene_report(outcome: Outcome) -> SceneReport {
         name: outcome.name,
         purpose: outcome.purpose,
         rows: outcome.rows,
+        size: outcome.size,
         pictures: outcome.pictures,
+        sheets: outcome.sheets,
+        worst: outcome.worst,
+        left_out: Vec::new(),
         plan,
         differences: outcome
             .described

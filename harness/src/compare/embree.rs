@@ -27,12 +27,14 @@
 mod band;
 mod edge;
 mod order;
+mod pair;
 mod vote;
 
 use rayon::prelude::*;
 use triptych_spec::vertex::Primitives;
 
 use crate::embree::{EmbreeError, RayHits};
+pub use pair::{DepthPair, Pair, pair};
 pub use vote::{Conflict, Disagreement, EmbreeVote};
 
 /// Rows of pixels that one task works through. Memory is proportional to the

@@ -1,5 +1,6 @@
 //! The Embree leg of one scene.
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use triptych_spec::scene::Scene;
@@ -11,12 +12,13 @@ use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits};
 use crate::observe::{Embree, Observed, Spec};
 use crate::row::Class;
 
-/// Asks Embree for its vote and adds the row; gives the scene for a picture.
+/// Asks Embree for its vote and adds the row; gives the scene for a picture, and the
+/// first pixels at which it disagrees.
 pub fn run(
     spec: &Observed<Spec, SpecRun>,
     edge_budget: Option<f64>,
     rows: &mut Rows,
-) -> Option<EmbreeScene> {
+) -> Option<(EmbreeScene, BTreeSet<u32>)> {
     let primitives = &spec.value.primitives;
     if primitives.prims.is_empty() {
         let reason = "no triangles reach the rasteriser".to_owned();
@@ -35,25 +37,31 @@ pub fn run(
         }
     };
     let embree = Observed::<Embree, _>::new("embree", scene);
-    let mut vote = Ok(());
+    let mut vote = Ok(BTreeSet::new());
     let judgement = compare(spec, &embree, |spec, scene| match compare::embree::compare(
         &spec.primitives,
         scene,
     ) {
-        Ok(vote) => judge(&vote, edge_budget),
+        Ok(found) => {
+            vote = Ok(found.first.iter().map(|d| d.pixel).collect());
+            judge(&found, edge_budget)
+        }
         Err(error) => {
             vote = Err(error);
             Judgement::new(Class::Vote, "pairs")
         }
     });
-    if let Err(error) = vote {
-        failed(rows, &error);
-        return None;
-    }
+    let unlike = match vote {
+        Ok(unlike) => unlike,
+        Err(error) => {
+            failed(rows, &error);
+            return None;
+        }
+    };
     let embree = embree.taking(start.elapsed());
     let spec = spec.map(|_| ()).taking(spec.value.times.cover);
     rows.add("cover", &spec, &embree, judgement);
-    Some(embree.value)
+    Some((embree.value, unlike))
 }
 
 fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgement {
@@ -78,31 +86,51 @@ fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgem
     judgement
 }
 
-/// What Embree saw: its hits in order of distance, blended like a list.
-pub fn picture(scene: &Scene, spec: &SpecRun, embree: &EmbreeScene) -> Vec<[f32; 3]> {
+/// What Embree saw.
+pub struct EmbreeSeen {
+    /// Its hits in order of distance, blended like lists.
+    pub picture: Vec<[f32; 3]>,
+    /// How many hits there are, each triangle once a ray.
+    pub hits: u64,
+    /// How many rays hit something.
+    pub pixels: u64,
+}
+
+/// Asks Embree for every ray's hits.
+pub fn look(scene: &Scene, spec: &SpecRun, embree: &EmbreeScene) -> EmbreeSeen {
+    let mut seen = EmbreeSeen {
+        picture: Vec::with_capacity(scene.size.pixels()),
+        hits: 0,
+        pixels: 0,
+    };
     let mut hits: Vec<Hit> = Vec::new();
-    let mut pixel = |x, y| {
+    let rows = 0..scene.size.height;
+    for (x, y) in rows.flat_map(|y| (0..scene.size.width).map(move |x| (x, y))) {
         if embree.hits(x, y, &mut hits).is_err() {
-            return scene.background;
+            seen.picture.push(scene.background);
+            continue;
         }
         hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.prim.cmp(&b.prim)));
         hits.dedup_by_key(|h| h.prim);
-        let mut sum = [0.0; 3];
-        let mut transmittance = 1.0;
-        for hit in &hits {
-            let [r, g, b, a] = spec.faces[hit.prim as usize];
-            for (sum, c) in sum.iter_mut().zip([r, g, b]) {
-                *sum += transmittance * a * c;
-            }
-            transmittance *= 1.0 - a;
+        seen.hits += hits.len() as u64;
+        seen.pixels += u64::from(!hits.is_empty());
+        seen.picture.push(blend(scene, spec, &hits));
+    }
+    seen
+}
+
+fn blend(scene: &Scene, spec: &SpecRun, hits: &[Hit]) -> [f32; 3] {
+    let mut sum = [0.0; 3];
+    let mut transmittance = 1.0;
+    for hit in hits {
+        let [r, g, b, a] = spec.faces[hit.prim as usize];
+        for (sum, c) in sum.iter_mut().zip([r, g, b]) {
+            *sum += transmittance * a * c;
         }
-        for (sum, c) in sum.iter_mut().zip(scene.background) {
-            *sum += transmittance * c;
-        }
-        sum
-    };
-    let rows = 0..scene.size.height;
-    rows.flat_map(|y| (0..scene.size.width).map(move |x| (x, y)))
-        .map(|(x, y)| pixel(x, y))
-        .collect()
+        transmittance *= 1.0 - a;
+    }
+    for (sum, c) in sum.iter_mut().zip(scene.background) {
+        *sum += transmittance * c;
+    }
+    sum
 }

@@ -9,7 +9,7 @@ use super::gpu::{Adapter, Broken, From, GpuLeg};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
-use super::{Options, end_to_end, pictures, skips};
+use super::{Options, end_to_end, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -149,6 +149,7 @@ impl Run<'_> {
             capacity: self.capacity(&spec.value),
             from: self.options.from,
         };
+        let spots = self.rows.spots.len();
         let seen = leg.run(&mut self.rows)?;
         if let Some(moved) = moved.as_ref().filter(|_| !from_own && !leg.by_band()) {
             // Whatever the leg was handed before, this run takes nothing but vertices.
@@ -163,10 +164,8 @@ impl Run<'_> {
             let saved = skips::run(&leg, &seen, &mut self.rows)?;
             self.saved.extend(saved.map(|ms| (leg.label(), ms)));
         }
-        if self.options.pictures && !seen.value.abuffer.image.is_empty() {
-            let image = &seen.value.abuffer.image;
-            self.pictures
-                .push(pictures::leg(&seen.label, scene.size, image));
+        if self.options.pictures {
+            self.keep(&leg, &seen, spots);
         }
         Ok(self.dump_gpu(&leg.spec.value, &seen))
     }

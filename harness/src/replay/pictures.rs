@@ -3,8 +3,8 @@
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::scene::Size;
 
+use super::rows::Spot;
 use super::spec::SpecRun;
-use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
 use crate::picture;
 use crate::report::Picture;
@@ -30,10 +30,29 @@ pub fn spec(spec: &SpecRun) -> [Picture; 2] {
     [leg("spec", size, &spec.picture()), layers]
 }
 
+/// Smallest distance of colours that is worth a picture: half a step of eight bits. It
+/// decides what is shown, and judges nothing.
+const VISIBLE: f32 = 1.0 / 512.0;
+
+/// How far a leg's picture is from the spec's on the same grid; `None` if nobody could
+/// see it.
+pub fn difference(label: &str, size: Size, spec: &[[f32; 3]], leg: &[[f32; 3]]) -> Option<Picture> {
+    let near = |(a, b): (&f32, &f32)| (a - b).abs() < VISIBLE || a.to_bits() == b.to_bits();
+    let alike = |(a, b): (&[f32; 3], &[f32; 3])| a.iter().zip(b).all(near);
+    if spec.len() != leg.len() || spec.iter().zip(leg).all(alike) {
+        return None;
+    }
+    Some(Picture {
+        title: format!("difference of {label}"),
+        caption: "Largest difference of a component from the spec's picture.".into(),
+        image: picture::difference(size, spec, leg),
+    })
+}
+
 /// Which pixels differ, and why; `None` if none does.
-pub fn causes(spec: Option<&Observed<Spec, SpecRun>>, marks: &[(u32, Cause)]) -> Option<Picture> {
-    let spec = &spec.filter(|_| !marks.is_empty())?.value;
-    let marks = marks.iter().map(|(pixel, cause)| (*pixel, Some(*cause)));
+pub fn causes(spec: Option<&Observed<Spec, SpecRun>>, spots: &[Spot]) -> Option<Picture> {
+    let spec = &spec.filter(|_| !spots.is_empty())?.value;
+    let marks = spots.iter().map(|spot| (spot.pixel, Some(spot.cause)));
     Some(Picture {
         title: "causes".into(),
         caption: "Pixels that differ in any leg, over the spec's picture.".into(),

@@ -16,8 +16,21 @@ pub struct Rows {
     pub rows: Vec<Row>,
     /// First differences of each row, in words.
     pub described: Vec<String>,
-    /// Pixels that differ, over all rows.
-    pub marks: Vec<(u32, Cause)>,
+    /// Items that differ and have a pixel, over all rows.
+    pub spots: Vec<Spot>,
+    /// Stage and leg of the rows that have spots.
+    pub seen_by: Vec<(String, String)>,
+}
+
+/// An item that differs at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Spot {
+    /// Row-major number of the pixel.
+    pub pixel: u32,
+    /// Why it differs.
+    pub cause: Cause,
+    /// Stage and leg, as a number in [`Rows::seen_by`].
+    pub by: usize,
 }
 
 impl Rows {
@@ -41,7 +54,12 @@ impl Rows {
         let described = judgement.described.iter();
         self.described
             .extend(described.map(|words| format!("{stage}, {}: {words}", b.label)));
-        self.marks.extend(&judgement.marks);
+        let by = self.seen_by.len();
+        let spot = |&(pixel, cause): &(u32, Cause)| Spot { pixel, cause, by };
+        self.spots.extend(judgement.marks.iter().map(spot));
+        if !judgement.marks.is_empty() {
+            self.seen_by.push((stage.into(), b.label.clone()));
+        }
         let mut note = judgement.note.clone();
         if let (true, Some(first)) = (note.is_empty(), judgement.described.first()) {
             note.clone_from(first);

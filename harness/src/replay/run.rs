@@ -1,5 +1,6 @@
 //! One scene under way.
 
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use triptych_spec::vertex::{self, SUBPIXEL_BITS};
@@ -8,7 +9,8 @@ use super::facts::Facts;
 use super::gpu::Adapter;
 use super::rows::Rows;
 use super::spec::{SpecRun, Times, timed};
-use super::{Options, Outcome, embree, pictures};
+use super::worst::{Errors, Worst};
+use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
 use crate::observe::{Analytic, Observed, Spec};
@@ -16,6 +18,7 @@ use crate::plan::Plan;
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
+use crate::sheet::{self, Rays, Sheet};
 
 /// Why a replay ends early.
 pub(super) enum Stop {
@@ -41,6 +44,10 @@ pub(super) struct Run<'a> {
     spec: Option<Rc<Observed<Spec, SpecRun>>>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
+    pub(super) sheets: Vec<Sheet>,
+    pub(super) errors: Errors,
+    /// The first pixels at which Embree disagrees.
+    pub(super) unlike: BTreeSet<u32>,
     pub(super) saved: Vec<(String, f64)>,
     facts: Option<Facts>,
     remarks: Vec<String>,
@@ -56,6 +63,9 @@ impl<'a> Run<'a> {
             spec: None,
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
+            sheets: Vec::new(),
+            errors: Errors::default(),
+            unlike: BTreeSet::new(),
             saved: Vec::new(),
             facts: None,
             remarks: loaded.stats.remarks(),
@@ -74,9 +84,14 @@ impl<'a> Run<'a> {
             let reason = "no other leg was asked for".to_owned();
             self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
-        let causes = pictures::causes(self.spec.as_deref(), &self.rows.marks);
+        let causes = pictures::causes(self.spec.as_deref(), &self.rows.spots);
         self.pictures
             .extend(causes.filter(|_| self.options.pictures));
+        let width = self.loaded.scene.size.width;
+        let worst = Worst::of(&self.rows, &self.errors, width);
+        if self.options.pictures && self.options.embree {
+            self.look_again(&worst)?;
+        }
         self.rows.rows.sort_by_key(column);
         Ok(Outcome {
             name: self.loaded.name.clone(),
@@ -84,11 +99,12 @@ impl<'a> Run<'a> {
             size: Some(self.loaded.scene.size),
             rows: self.rows.rows,
             described: self.rows.described,
-            marks: self.rows.marks,
+            worst,
             plan: Some(self.plan),
             saved: self.saved,
             facts: self.facts,
             pictures: self.pictures,
+            sheets: shown::once(self.sheets),
             remarks: self.remarks,
         })
     }
@@ -129,15 +145,17 @@ impl<'a> Run<'a> {
         if let Some(unit) = cache.get(&key) {
             self.rows.rows.extend(unit.rows);
             self.pictures.extend(unit.pictures);
+            self.sheets.extend(unit.sheets);
             self.saved.extend(unit.saved);
             return Ok(());
         }
         let (rows, pictures) = (self.rows.rows.len(), self.pictures.len());
-        let saved = self.saved.len();
+        let (saved, sheets) = (self.saved.len(), self.sheets.len());
         work(self)?;
         let unit = Unit {
             rows: self.rows.rows[rows..].to_vec(),
             pictures: self.pictures[pictures..].to_vec(),
+            sheets: self.sheets[sheets..].to_vec(),
             saved: self.saved[saved..].to_vec(),
         };
         if let Err(error) = cache.put(&key, &unit) {
@@ -180,6 +198,8 @@ impl<'a> Run<'a> {
         self.facts = Some(Facts::new(self.loaded, &spec.value, &self.plan));
         if self.options.pictures {
             self.pictures.extend(pictures::spec(&spec.value));
+            self.sheets
+                .push(sheet::spec(&self.loaded.scene, &spec.value, &spec.label));
         }
         self.dump_spec(&spec).map_err(Stop::Dump)
     }
@@ -214,10 +234,13 @@ impl<'a> Run<'a> {
         let stated = &self.loaded.file.budget;
         let budget = (!self.loaded.bare).then_some(stated.edge.0);
         let seen = embree::run(&spec, budget, &mut self.rows);
-        if let Some(seen) = seen.filter(|_| self.options.pictures) {
-            let pixels = embree::picture(&self.loaded.scene, &spec.value, &seen);
-            self.pictures
-                .push(pictures::leg("embree", self.loaded.scene.size, &pixels));
+        if let Some((embree, unlike)) = seen.filter(|_| self.options.pictures) {
+            let (scene, spec) = (&self.loaded.scene, &spec.value);
+            let seen = embree::look(scene, spec, &embree);
+            self.shown("embree", spec, &seen.picture);
+            let rays = Rays::new(scene, spec, &embree);
+            self.sheets.push(rays.sheet(&seen));
+            self.unlike = unlike;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::{Picture, SceneReport, base64, text};
+use super::{Picture, SceneReport, base64, text, worst};
 use crate::digest::leg_parts;
 use crate::picture::{Image, Legend, Mark, heat, swatch};
 use crate::text::{clean, count, plural};
@@ -16,41 +16,54 @@ const ENLARGE_MAX: u32 = 32;
 /// Boxes in the legend of a heat map, at most.
 const STEPS: u32 = 10;
 
-/// The pictures of a scene.
+/// The pictures of a scene: spec, a GPU leg and Embree, then the maps and other legs.
 pub fn grid(scene: &SceneReport) -> Markup {
+    let groups = groups(scene);
+    let (three, more) = groups.split_at(groups.len().min(3));
     html! {
-        @if !scene.pictures.is_empty() {
+        @if !three.is_empty() {
             h4 { "Pictures" }
-            div.figures {
-                @for group in groups(&scene.pictures) { (figure(&scene.name, &group)) }
-            }
+            div class="figures three" { @for group in three { (figure(&scene.name, group)) } }
+            div.figures { @for group in more { (figure(&scene.name, group)) } }
         }
     }
 }
 
-/// The three legs side by side, then the maps; GPU legs whose pictures are the
-/// same, byte for byte, together.
-fn groups(pictures: &[Picture]) -> Vec<Vec<&Picture>> {
-    let leg = |picture: &Picture| leg_parts(&picture.title).0 == "gpu";
-    let mut pictures: Vec<&Picture> = pictures.iter().collect();
-    pictures.sort_by_key(|p| match leg_parts(&p.title).0 {
-        "spec" => 0,
-        "gpu" => 1,
-        "embree" => 2,
-        _ => 3,
-    });
+/// Pictures of GPU legs that are the same, byte for byte, together. The three legs come
+/// first, with the GPU leg to look at first; then causes, layers, differences, and the
+/// other GPU legs.
+fn groups(scene: &SceneReport) -> Vec<Vec<&Picture>> {
+    let kind = |picture: &Picture| leg_parts(&picture.title).0.to_owned();
+    let by_gpus = |picture: &Picture| kind(picture).ends_with("gpu");
     let mut groups: Vec<Vec<&Picture>> = Vec::new();
-    for picture in pictures {
+    for picture in &scene.pictures {
         let same = |group: &&mut Vec<&Picture>| {
             let first = group[0];
-            leg(first) && leg(picture) && first.image == picture.image
+            by_gpus(first) && kind(first) == kind(picture) && first.image == picture.image
         };
         match groups.iter_mut().find(same) {
             Some(group) => group.push(picture),
             None => groups.push(vec![picture]),
         }
     }
-    groups
+    let is_leg = |group: &Vec<&Picture>| kind(group[0]) == "gpu";
+    let diverging = worst::first(&scene.rows).map(|row| row.b.as_str());
+    let shows = |group: &Vec<&Picture>| group.iter().any(|p| Some(p.title.as_str()) == diverging);
+    let first = groups.iter().position(shows);
+    let first = first.or_else(|| groups.iter().position(is_leg));
+    let rank = |(i, group): &(usize, Vec<&Picture>)| match kind(group[0]).as_str() {
+        "spec" => 0,
+        "gpu" if Some(*i) == first => 1,
+        "embree" => 2,
+        "causes" => 3,
+        "layers" => 4,
+        "difference of gpu" => 5,
+        "difference of embree" => 6,
+        _ => 7,
+    };
+    let mut ranked: Vec<(usize, Vec<&Picture>)> = groups.into_iter().enumerate().collect();
+    ranked.sort_by_key(rank);
+    ranked.into_iter().map(|(_, group)| group).collect()
 }
 
 fn figure(scene: &str, group: &[&Picture]) -> Markup {
@@ -58,10 +71,8 @@ fn figure(scene: &str, group: &[&Picture]) -> Markup {
     let titles: Vec<_> = group.iter().map(|p| clean(&p.title)).collect();
     let alt = format!("{} of {}: {}", titles[0], clean(scene), clean(caption));
     html! {
-        figure {
-            button.zoom type="button" aria-label={"Enlarge: " (titles[0])} {
-                (img(image, &alt))
-            }
+        figure data-titles=(titles.join("\n")) {
+            div.shot { (img(image, &alt)) }
             figcaption {
                 @for (i, title) in titles.iter().enumerate() {
                     @if i > 0 { ", " }

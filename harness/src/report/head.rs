@@ -7,6 +7,32 @@ use crate::digest;
 use crate::row::{Summary, Verdict};
 use crate::text::{count, plural, time};
 
+/// The sections of the page, as the navigation lists them: identifier and name.
+const SECTIONS: [(&str, &str); 5] = [
+    ("scenes", "Scenes"),
+    ("details", "Scene by scene"),
+    ("mutants", "Mutants"),
+    ("run", "This run"),
+    ("glossary", "Glossary"),
+];
+
+/// The keys that the script listens to.
+const KEYS: [(&str, &str); 10] = [
+    ("n, p", "next scene that diverges, and the one before"),
+    (
+        "w, W",
+        "next of the worst pixels of the scene, and the one before",
+    ),
+    ("v", "to the pictures of the scene"),
+    ("arrows", "move the cursor by a pixel; with Shift by ten"),
+    ("Enter", "show the lists of the pixel"),
+    ("+, -", "enlarge, reduce"),
+    ("x", "swap the two pictures"),
+    ("Tab, arrows", "the slider moves like any other"),
+    ("/", "filter by name"),
+    ("?", "these keys; Escape closes"),
+];
+
 /// The verdict in one line.
 pub fn headline(input: &ReportInput, summary: &Summary) -> String {
     let scenes = plural(input.scenes.len() as u64, "scene");
@@ -51,8 +77,10 @@ pub fn banner(input: &ReportInput, summary: &Summary) -> Markup {
             }
         }
         nav aria-label="Sections" {
-            a href="#scenes" { "Scenes" } " · " a href="#details" { "Scene by scene" } " · "
-            a href="#mutants" { "Mutants" } " · " a href="#run" { "This run" } " · " a href="#glossary" { "Glossary" }
+            @for (i, (id, name)) in SECTIONS.iter().enumerate() {
+                @if i > 0 { " · " }
+                a href={"#" (id)} { (name) }
+            }
         }
     }
 }
@@ -86,6 +114,17 @@ pub fn run(run: &RunInfo) -> Markup {
                     }
                 }
             }
+        }
+    }
+}
+
+/// What the keys do, for the script to show.
+pub fn keys() -> Markup {
+    html! {
+        dialog #keys aria-labelledby="keys-title" {
+            h2 #keys-title { "Keys" }
+            dl.facts { @for (key, what) in KEYS { dt { kbd { (key) } } dd { (what) } } }
+            form method="dialog" { button { "Close" } }
         }
     }
 }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::{ReportInput, SceneReport, sign, text, verdict_name};
 use crate::digest::{self, Pair, column_order, leg_parts};
 use crate::row::Verdict;
-use crate::text::{clean, count, share};
+use crate::text::{clean, compact, count, share};
 
 /// All scenes, one line each, one column per pair of legs; those of [`digest::PLAN`]
 /// share one.
@@ -30,7 +30,7 @@ pub fn section(input: &ReportInput) -> Markup {
                         th.n scope="col" { a href="#term-edge" { "edge" } }
                     } }
                     tbody {
-                        @for (i, scene) in input.scenes.iter().enumerate() {
+                        @for (i, scene) in input.in_order() {
                             (line(i, scene, &pairs))
                         }
                     }
@@ -61,6 +61,10 @@ fn filter(input: &ReportInput) -> Markup {
             }
             label { "Name contains " input type="search" name="name" autocomplete="off"; }
             output name="shown" aria-live="polite" {}
+            @if input.count(Verdict::Diverge) > 0 {
+                button type="button" data-key="n" hidden { "First divergence" }
+            }
+            button type="button" data-key="?" hidden { "Keys" }
         }
     }
 }
@@ -84,9 +88,9 @@ fn line(i: usize, scene: &SceneReport, pairs: &[(&str, &str)]) -> Markup {
                 @if scene.rows.iter().any(|r| r.cached) { " " span.tag { "cached" } }
             }
             @for (a, b) in pairs {
-                td.n { @if let Some(pair) = own.iter().find(|p| p.a == *a && p.b == *b) { (cell(pair)) } }
+                td.n data-leg={(clean(a)) " : " (clean(b))} { @if let Some(pair) = own.iter().find(|p| p.a == *a && p.b == *b) { (cell(pair)) } }
             }
-            td.n { @if let Some((part, over)) = digest::edge_share(&scene.rows) {
+            td.n data-leg="edge" { @if let Some((part, over)) = digest::edge_share(&scene.rows) {
                 (share(part))
                 @if over { " " strong.diverge { "over budget" } }
             } }
@@ -97,7 +101,8 @@ fn line(i: usize, scene: &SceneReport, pairs: &[(&str, &str)]) -> Markup {
 fn cell(pair: &Pair<'_>) -> Markup {
     match pair.verdict() {
         Verdict::Agree => html! {
-            span.agree role="img" aria-label="agrees," { "✓" } " " (count(pair.compared()))
+            span.agree role="img" aria-label="agrees," { "✓" } " "
+            span title=(count(pair.compared())) { (compact(pair.compared())) }
         },
         Verdict::Diverge => html! {
             strong.diverge { span role="img" aria-label="diverges," { "✗" } " "

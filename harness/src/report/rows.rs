@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::glossary::class_name;
-use super::{SceneReport, sign, text};
+use super::{SceneReport, sign, text, worst};
 use crate::digest::{self, Times, column_order, leg_parts};
 use crate::row::{Row, Verdict};
 use crate::text::{clean, count, share, time};
@@ -12,6 +12,7 @@ use crate::text::{clean, count, share, time};
 pub fn table(scene: &SceneReport) -> Markup {
     let mut pairs = digest::pairs(&scene.rows);
     pairs.sort_by(|x, y| column_order(x.a, x.b).cmp(&column_order(y.a, y.b)));
+    let first = worst::first(&scene.rows);
     html! {
         @if !scene.rows.is_empty() {
             h4 { "Comparisons" }
@@ -28,7 +29,7 @@ pub fn table(scene: &SceneReport) -> Markup {
                         tr.pair { th colspan="9" scope="rowgroup" {
                             (text(pair.a)) " : " (text(pair.b))
                         } }
-                        @for row in &pair.rows { (line(row)) }
+                        @for row in &pair.rows { (line(row, first.is_some_and(|f| std::ptr::eq(f, *row)))) }
                     } }
                 }
             }
@@ -36,12 +37,15 @@ pub fn table(scene: &SceneReport) -> Markup {
     }
 }
 
-fn line(row: &Row) -> Markup {
+fn line(row: &Row, is_first: bool) -> Markup {
     let class = class_name(row.class);
     let bad = row.verdict() == Verdict::Diverge;
     html! {
-        tr class=[bad.then_some("bad")] {
-            th scope="row" { (text(&row.stage)) }
+        tr class=[bad.then_some(if is_first { "bad first" } else { "bad" })] {
+            th scope="row" {
+                @if is_first { span role="img" aria-label="first divergence: " { "▶ " } }
+                (text(&row.stage))
+            }
             td { (sign(row.verdict())) @if row.cached { " " span.tag { "cached" } } }
             td { a href={"#class-" (class)} { (class) } }
             td.n { (count(row.compared)) " " (text(&row.unit)) }

@@ -2,7 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::{Difference, PlanLine, SceneReport, figures, rows, sign, text, verdict_name};
+use super::{
+    Difference, PlanLine, SceneReport, figures, rows, sign, text, verdict_name, viewer, worst,
+};
 use crate::row::Verdict;
 use crate::text::{clean, time};
 
@@ -20,33 +22,38 @@ pub fn section(i: usize, scene: &SceneReport) -> Markup {
             @if scene.rows.is_empty() {
                 p.diverge { "Nothing was compared, and no reason is known." }
             }
+            (worst::lead(scene))
             @for command in scene.again() {
                 p.again { "Again: " code { (text(&command)) } }
             }
-            (differences(&scene.differences))
             (figures::grid(scene))
+            (worst::table(&scene.worst))
+            (viewer::viewer(scene))
+            (viewer::held(scene))
             (rows::table(scene))
+            @if !scene.differences.is_empty() {
+                h4 { "First differences" }
+                (differences(&scene.differences))
+            }
             (rows::times(scene))
             (plan(&scene.plan))
         }
     }
 }
 
-fn differences(differences: &[Difference]) -> Markup {
+/// Differences in words, with lists side by side.
+pub fn differences(differences: &[Difference]) -> Markup {
     html! {
-        @if !differences.is_empty() {
-            h4 { "First differences" }
-            @for difference in differences {
-                div.difference {
-                    pre.words { (lines(&difference.words)) }
-                    @if !difference.sides.is_empty() {
-                        div.sides { @for (leg, list) in &difference.sides {
-                            div {
-                                h5 { (text(leg)) " (" (list.len()) ")" }
-                                ol start="0" { @for entry in list { li { (text(entry)) } } }
-                            }
-                        } }
-                    }
+        @for difference in differences {
+            div.difference {
+                pre.words { (lines(&difference.words)) }
+                @if !difference.sides.is_empty() {
+                    div.sides { @for (leg, list) in &difference.sides {
+                        div {
+                            h5 { (text(leg)) " (" (list.len()) ")" }
+                            ol start="0" { @for entry in list { li { (text(entry)) } } }
+                        }
+                    } }
                 }
             }
         }

@@ -4,10 +4,11 @@ use rayon::prelude::*;
 use triptych_spec::raster::{Setup, Span, sample};
 use triptych_spec::vertex::Primitives;
 
-use super::edge::{EDGE_BITS, flat_edges, is_edge};
+use super::edge::EDGE_BITS;
 use super::order::{self, Seen};
+use super::pair::{DepthPair, Pair, Side};
 use super::vote::{Conflict, Disagreement, EmbreeVote};
-use crate::embree::bound::{Promise, Triangle};
+use crate::embree::bound::Triangle;
 use crate::embree::{EmbreeError, Hit, RayHits};
 
 /// A triangle that may cover samples of the band.
@@ -187,49 +188,46 @@ impl<E: RayHits> Sweep<'_, E> {
         point: [i64; 2],
         hit: Option<f32>,
     ) {
-        let edges = setup.map_or_else(|| flat_edges(self.spec, prim, point), |s| s.edges(point));
-        let covered = setup.is_some_and(|s| s.covers(edges));
-        let agree = u64::from(covered == hit.is_some());
+        let side = Side {
+            spec: self.spec,
+            prim,
+            setup,
+            triangle,
+        };
         let vote = &mut self.vote;
         vote.pairs += 1;
-        if is_edge(edges) {
-            vote.edge += 1;
-            vote.edge_agreeing += agree;
-            return;
-        }
-        let promise = triangle.promise(point);
-        if promise == Promise::Unresolved {
-            vote.unresolved += 1;
-            vote.unresolved_agreeing += agree;
-            return;
-        }
-        // What is expected is the spec's word; the promise only says that Embree
-        // is able to give it, and how precise its depth is.
-        match (setup, promise, hit) {
-            (Some(setup), Promise::Hit { bound }, Some(t)) if covered => {
-                self.depth(pixel, prim, setup.key(edges), bound, t);
+        match side.pair(&self.embree.depth(), point, hit) {
+            Pair::Edge { agree } => {
+                vote.edge += 1;
+                vote.edge_agreeing += u64::from(agree);
             }
-            (_, _, None) if covered => {
+            Pair::Unresolved { agree } => {
+                vote.unresolved += 1;
+                vote.unresolved_agreeing += u64::from(agree);
+            }
+            Pair::Depth(depth) => {
+                let t = hit.expect("a depth is that of a hit");
+                self.depth(pixel, prim, depth, t);
+            }
+            Pair::Missed => {
                 vote.missed += 1;
                 self.conflict(pixel, prim, Conflict::Missed);
             }
-            (_, _, Some(_)) => {
+            Pair::Invented => {
                 vote.invented += 1;
                 self.conflict(pixel, prim, Conflict::Invented);
             }
-            (_, _, None) => {}
+            Pair::Neither => {}
         }
     }
 
-    /// Compares a depth, and notes it for [`Self::order`].
-    fn depth(&mut self, pixel: u32, prim: u32, key: u32, bound: f64, t: f32) {
-        // The key is the floor of the exact depth: one key more on that side.
-        let bound = bound + 1.0;
-        let (exact, embree) = (f64::from(key), self.embree.depth().key(t));
-        let error = (embree - exact).abs() / bound;
+    /// Judges a depth, and notes it for [`Self::order`].
+    fn depth(&mut self, pixel: u32, prim: u32, depth: DepthPair, t: f32) {
+        let DepthPair { key, embree, bound } = depth;
+        let exact = f64::from(key);
         self.vote.depths += 1;
-        self.vote.error_over_bound = self.vote.error_over_bound.max(error);
-        if error > 1.0 || error.is_nan() {
+        self.vote.error_over_bound = self.vote.error_over_bound.max(depth.ratio());
+        if depth.is_outside() {
             self.vote.depths_outside += 1;
             self.conflict(pixel, prim, Conflict::Depth { key, embree, bound });
         }
