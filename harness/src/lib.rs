@@ -2,6 +2,7 @@
 //! command line over this library.
 
 pub mod again;
+pub mod bench;
 pub mod cache;
 pub mod calibrate;
 pub mod cause;

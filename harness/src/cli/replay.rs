@@ -84,13 +84,23 @@ enum Leg {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum PathName {
+pub(super) enum PathName {
     /// The hardware's rasteriser
     Fragment,
     /// Integer arithmetic in baseline WGSL
     Compute,
     /// The same with 64-bit integers, where an adapter has them
     Native,
+}
+
+impl PathName {
+    pub(super) fn path(self) -> Path {
+        match self {
+            Self::Fragment => Path::Fragment,
+            Self::Compute => Path::Compute,
+            Self::Native => Path::Native,
+        }
+    }
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -256,9 +266,7 @@ impl Args {
             embree: wanted(Leg::Embree),
             paths: match self.path {
                 None => Options::default().paths,
-                Some(PathName::Fragment) => vec![Path::Fragment],
-                Some(PathName::Compute) => vec![Path::Compute],
-                Some(PathName::Native) => vec![Path::Native],
+                Some(path) => vec![path.path()],
             },
             from: self.gpu_from,
             skip: !self.no_skip,
