@@ -57,12 +57,6 @@ pub enum GpuError {
         /// Which kernel.
         stage: &'static str,
     },
-    /// Nothing can be timed on an adapter that does not tell when a pass ends.
-    #[error("{adapter}: no timestamps")]
-    NoTimestamps {
-        /// The adapter.
-        adapter: String,
-    },
     /// WGSL that does not link, parse or validate.
     #[error(transparent)]
     Wgsl(#[from] crate::wgsl::WgslError),

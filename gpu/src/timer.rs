@@ -1,13 +1,34 @@
-//! When passes began and ended, by the device's own clock.
+//! How long passes take: by the device's clock where it can be believed.
+//!
+//! llvmpipe answers timestamps around compute passes with moments of its rasteriser's
+//! queue: it copies 256 MiB in no time at all. So a clock is tried before it is used.
+
+use std::time::Instant;
 
 use crate::context::Gpu;
 use crate::error::GpuError;
 
-/// Room for the times of so many spans of passes.
+/// Who says how long something takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The device: timestamps around passes.
+    Device,
+    /// The host, and why: each span is submitted by itself, and the time until the device
+    /// is idle is taken, so that it holds what a submission costs.
+    Host(String),
+}
+
+/// Times spans of passes.
 pub struct Timer {
+    spans: u32,
+    /// The device's clock; `None`: the host's.
+    queries: Option<Queries>,
+}
+
+/// Room for the timestamps of all spans.
+pub(crate) struct Queries {
     set: wgpu::QuerySet,
     ticks: wgpu::Buffer,
-    spans: u32,
     /// Nanoseconds of a tick.
     period: f64,
 }
@@ -24,13 +45,45 @@ impl Timer {
     /// A timer of `spans` spans.
     ///
     /// # Errors
-    /// An adapter without timestamps, by its name; what the device refuses.
-    pub fn new(gpu: &Gpu, spans: u32) -> Result<Self, GpuError> {
-        if !gpu.has_timestamps() {
-            return Err(GpuError::NoTimestamps {
-                adapter: gpu.name.clone(),
-            });
+    /// What the device refuses.
+    pub fn new(gpu: &Gpu, clock: &Clock, spans: u32) -> Result<Self, GpuError> {
+        let queries = match clock {
+            Clock::Device => Some(Queries::new(gpu, spans)?),
+            Clock::Host(_) => None,
+        };
+        Ok(Self { spans, queries })
+    }
+
+    /// Runs spans in this order, all of them each once, and gives the seconds of each by
+    /// its number: from the beginning of its first pass to the end of its last. `record`
+    /// records a span, each pass with what [`Queries::writes`] says of it.
+    pub(crate) fn time(
+        &self,
+        gpu: &Gpu,
+        order: impl Iterator<Item = u32>,
+        mut record: impl FnMut(u32, &mut wgpu::CommandEncoder, Option<&Queries>),
+    ) -> Result<Vec<f64>, GpuError> {
+        if let Some(queries) = &self.queries {
+            let mut encoder = gpu.encoder();
+            for span in order {
+                record(span, &mut encoder, Some(queries));
+            }
+            return queries.submit(gpu, encoder, self.spans);
         }
+        let mut seconds = vec![0.0; self.spans as usize];
+        for span in order {
+            let mut encoder = gpu.encoder();
+            record(span, &mut encoder, None);
+            let start = Instant::now();
+            gpu.submit(encoder)?;
+            seconds[span as usize] = start.elapsed().as_secs_f64();
+        }
+        Ok(seconds)
+    }
+}
+
+impl Queries {
+    fn new(gpu: &Gpu, spans: u32) -> Result<Self, GpuError> {
         let set = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
             label: Some("timestamps"),
             ty: wgpu::QueryType::Timestamp,
@@ -49,7 +102,6 @@ impl Timer {
         Ok(Self {
             set,
             ticks,
-            spans,
             period: f64::from(gpu.queue.get_timestamp_period()),
         })
     }
@@ -64,19 +116,15 @@ impl Timer {
         (writes.begin.is_some() || writes.end.is_some()).then_some(writes)
     }
 
-    /// Runs what was recorded, in which every span had its passes, and gives the seconds
-    /// from the beginning of each span's first pass to the end of its last.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn submit(
+    fn submit(
         &self,
         gpu: &Gpu,
         mut encoder: wgpu::CommandEncoder,
+        spans: u32,
     ) -> Result<Vec<f64>, GpuError> {
-        encoder.resolve_query_set(&self.set, 0..2 * self.spans, &self.ticks, 0);
+        encoder.resolve_query_set(&self.set, 0..2 * spans, &self.ticks, 0);
         gpu.submit(encoder)?;
-        let ticks: Vec<u64> = gpu.read(&self.ticks, 2 * self.spans as usize)?;
+        let ticks: Vec<u64> = gpu.read(&self.ticks, 2 * spans as usize)?;
         let seconds = |span: &[u64]| span[1].saturating_sub(span[0]) as f64 * self.period * 1e-9;
         Ok(ticks.chunks_exact(2).map(seconds).collect())
     }

@@ -60,8 +60,8 @@ pub struct Bench {
     pub ceilings: Vec<Ceilings>,
     /// What was measured, scene by scene, leg by leg.
     pub rows: Vec<Row>,
-    /// What was not, and why.
-    pub skipped: Vec<String>,
+    /// What was not, and why; whose clock is not the device's.
+    pub remarks: Vec<String>,
 }
 
 /// How the nearest layers are found.
@@ -97,6 +97,8 @@ pub struct Row {
     pub longest: u32,
     /// `spec`, or `gpu@adapter/path`.
     pub leg: String,
+    /// Whose clock: `device` or `host`.
+    pub clock: String,
     /// How.
     pub method: Method,
     /// Nearest layers shown.

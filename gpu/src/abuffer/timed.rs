@@ -242,18 +242,31 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(())
     }
 
-    /// Runs every part once, in one submission, and gives the seconds of each.
+    /// Runs every part once, and gives the seconds of each. Parts that may come in any
+    /// order change places from round to round, so that none is always first.
     ///
     /// # Errors
-    /// An adapter without timestamps; whatever the device reports.
-    pub fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError> {
-        let mut encoder = self.rasterizer.gpu.encoder();
-        for (span, (_, passes)) in (0..).zip(&self.parts) {
+    /// Whatever the device reports.
+    pub fn time(&self, timer: &Timer, round: u32) -> Result<Vec<f64>, GpuError> {
+        let gpu = self.rasterizer.gpu;
+        let order = self.order(round);
+        timer.time(gpu, order.into_iter(), |span, encoder, queries| {
+            let passes = &self.parts[span as usize].1;
             for (at, pass) in passes.iter().enumerate() {
-                let writes = timer.writes(span, at, passes.len());
-                pass.record(self.rasterizer, &mut encoder, writes);
+                let writes = queries.and_then(|q| q.writes(span, at, passes.len()));
+                pass.record(self.rasterizer, encoder, writes);
             }
+        })
+    }
+
+    /// The parts by their numbers: neighbours of one kind rotate.
+    fn order(&self, round: u32) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..).zip(&self.parts).map(|(at, _)| at).collect();
+        let kind = |at: &u32| std::mem::discriminant(&self.parts[*at as usize].0);
+        for same in order.chunk_by_mut(|a, b| kind(a) == kind(b)) {
+            let by = round as usize % same.len();
+            same.rotate_left(by);
         }
-        timer.submit(self.rasterizer.gpu, encoder)
+        order
     }
 }

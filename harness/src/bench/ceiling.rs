@@ -7,6 +7,7 @@ use triptych_gpu::ceiling::Ceiling;
 use triptych_gpu::context::Gpu;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::kernel::Kernels;
+use triptych_gpu::timer::Clock;
 
 use super::counts::Work;
 use super::{Spread, WARM_UP};
@@ -24,14 +25,16 @@ pub struct Ceilings {
     pub bytes: Spread,
     /// Atomics per second where lists are built; one core needs none.
     pub atomics: Option<Spread>,
+    /// Who says how long something takes: `device` by its timestamps, or `host`.
+    pub clock: String,
 }
 
 impl Ceilings {
-    /// Of an adapter.
+    /// Of an adapter, and the clock that they were measured by.
     ///
     /// # Errors
-    /// An adapter without timestamps; whatever the device reports.
-    pub fn of(gpu: &Gpu, kernels: &Kernels, runs: u32) -> Result<Self, GpuError> {
+    /// Whatever the device reports.
+    pub fn of(gpu: &Gpu, kernels: &Kernels, runs: u32) -> Result<(Self, Clock), GpuError> {
         let ceiling = Ceiling::new(gpu, kernels)?;
         let mut rates = Vec::new();
         for round in 0..WARM_UP + runs {
@@ -40,11 +43,18 @@ impl Ceilings {
                 rates.push(rate);
             }
         }
-        Ok(Self {
+        let clock = ceiling.clock().clone();
+        let ceilings = Self {
             name: gpu.name.clone(),
             bytes: Spread::of(rates.iter().map(|r| r.bytes)),
             atomics: Some(Spread::of(rates.iter().map(|r| r.atomics))),
-        })
+            clock: match clock {
+                Clock::Device => "device",
+                Clock::Host(_) => "host",
+            }
+            .to_owned(),
+        };
+        Ok((ceilings, clock))
     }
 
     /// Of one core of the CPU.
@@ -62,6 +72,7 @@ impl Ceilings {
             name: "spec".to_owned(),
             bytes: Spread::of((0..runs).map(|_| copy())),
             atomics: None,
+            clock: "host".to_owned(),
         }
     }
 
@@ -88,6 +99,7 @@ mod tests {
             name: "x".into(),
             bytes: rate(100.0),
             atomics: Some(rate(10.0)),
+            clock: "host".into(),
         };
         let work = Work {
             bytes: 50,

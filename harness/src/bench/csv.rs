@@ -4,7 +4,7 @@ use super::{Bench, Row};
 
 /// The columns. Times are in milliseconds, rates per second, memory in bytes, PSNR in
 /// decibels or `exact`; `ratio` is over the same leg's time of all layers by sorting.
-pub const COLUMNS: [&str; 26] = [
+pub const COLUMNS: [&str; 27] = [
     "scene",
     "width",
     "height",
@@ -15,6 +15,7 @@ pub const COLUMNS: [&str; 26] = [
     "layers",
     "all",
     "runs",
+    "clock",
     "time_ms",
     "time_ms_min",
     "time_ms_max",
@@ -50,7 +51,7 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
             .parts
             .iter()
             .filter(|(n, _)| names.contains(&n.as_str()));
-        number(parts.map(|(_, ms)| ms).sum())
+        number(parts.fold(0.0, |sum, (_, ms)| sum + ms))
     };
     [
         quoted(&row.scene),
@@ -63,6 +64,7 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
         row.layers.to_string(),
         row.all.to_string(),
         runs.to_string(),
+        row.clock.clone(),
         number(row.time.median),
         number(row.time.min),
         number(row.time.max),
@@ -82,6 +84,7 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
     ]
 }
 
+/// Six digits behind the point tell nanoseconds apart.
 fn number(value: f64) -> String {
     format!("{value:.6}")
 }

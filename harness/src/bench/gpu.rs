@@ -3,7 +3,7 @@
 use triptych_gpu::abuffer::{Options, Part, Timed};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Rasterizer;
-use triptych_gpu::timer::Timer;
+use triptych_gpu::timer::{Clock, Timer};
 
 use super::error::Error;
 use super::grid::Grid;
@@ -47,6 +47,7 @@ impl<'r> Leg<'r> {
         rasterizer: &'r Rasterizer<'r>,
         grid: &'r Grid,
         options: Options<'_>,
+        clock: &Clock,
     ) -> Result<Self, Refusal> {
         let expected = grid.run.lists.attempts;
         let options = Options {
@@ -71,7 +72,7 @@ impl<'r> Leg<'r> {
         let parts: Vec<Part> = timed.parts().collect();
         let spans = u32::try_from(parts.len()).expect("a few parts");
         let mut leg = Self {
-            timer: Timer::new(rasterizer.gpu, spans)?,
+            timer: Timer::new(rasterizer.gpu, clock, spans)?,
             label,
             grid,
             timed,
@@ -113,7 +114,7 @@ impl<'r> Leg<'r> {
 
     /// Runs everything once, and keeps the times after the warm-up.
     pub(super) fn round(&mut self, round: u32) -> Result<(), Refusal> {
-        let seconds = self.timed.time(&self.timer)?;
+        let seconds = self.timed.time(&self.timer, round)?;
         if round >= WARM_UP {
             self.rounds.push(seconds);
         }

@@ -35,12 +35,7 @@ pub fn page(bench: &Bench) -> String {
             .iter()
             .map(|c| format!("- ceiling of {}", text(&ceiling(c)))),
     );
-    lines.extend(
-        bench
-            .skipped
-            .iter()
-            .map(|s| format!("- not measured: {}", text(s))),
-    );
+    lines.extend(bench.remarks.iter().map(|r| format!("- {}", text(r))));
     lines.push(String::new());
     lines.extend(how(bench).lines().map(str::to_owned));
     lines.push(String::new());

@@ -1,9 +1,9 @@
 //! All scenes.
 
 use triptych_gpu::abuffer::{KEPT_MAX, with_layers};
-use triptych_gpu::error::GpuError;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
+use triptych_gpu::timer::Clock;
 use triptych_gpu::wgsl::Sources;
 
 use super::counts::Work;
@@ -40,10 +40,18 @@ pub(super) struct Bound<'c>(pub(super) &'c [Ceilings]);
 impl Bound<'_> {
     /// What bounds such work on a leg, and the seconds that it allows at least.
     pub(super) fn of(&self, leg: &str, work: Work) -> (&'static str, f64) {
+        self.own(leg).map_or(("bytes", 0.0), |c| c.bound(work))
+    }
+
+    /// Whose clock times a leg.
+    pub(super) fn clock(&self, leg: &str) -> &str {
+        self.own(leg).map_or("host", |c| &c.clock)
+    }
+
+    fn own(&self, leg: &str) -> Option<&Ceilings> {
         let name = leg.strip_prefix("gpu@").unwrap_or(leg);
         let name = name.rsplit_once('/').map_or(name, |(name, _)| name);
-        let own = self.0.iter().find(|c| c.name == name);
-        own.map_or(("bytes", 0.0), |c| c.bound(work))
+        self.0.iter().find(|c| c.name == name)
     }
 }
 
@@ -64,7 +72,7 @@ pub fn run(
         runs: options.runs,
         ceilings: Vec::new(),
         rows: Vec::new(),
-        skipped: Vec::new(),
+        remarks: Vec::new(),
     };
     let mut wrong = Vec::new();
     progress.begin("ceilings", u32::try_from(adapters.len()).unwrap_or(0) + 1);
@@ -72,13 +80,19 @@ pub fn run(
     progress.step();
     let mut stations = Vec::new();
     for adapter in adapters {
-        let station = station(adapter, options);
+        let mut station = station(adapter, options);
         match Ceilings::of(&adapter.gpu, &station.kernels, options.runs) {
-            Ok(ceilings) => {
+            Ok((ceilings, clock)) => {
+                if let Clock::Host(reason) = &clock {
+                    let name = &adapter.gpu.name;
+                    let words = format!("{name} is timed by the host's clock: {reason}");
+                    bench.remarks.push(words);
+                }
                 bench.ceilings.push(ceilings);
+                station.clock = clock;
                 stations.push(station);
             }
-            Err(error) => bench.skipped.push(not_timed(&error)),
+            Err(error) => bench.remarks.push(format!("not measured: {error}")),
         }
         progress.step();
     }
@@ -86,7 +100,8 @@ pub fn run(
         let loaded = match load_entry(entry, None) {
             Ok(loaded) => loaded,
             Err(missing @ LoadError::Missing { .. }) => {
-                bench.skipped.push(format!("{}: {missing}", entry.name));
+                let words = format!("not measured: {}: {missing}", entry.name);
+                bench.remarks.push(words);
                 continue;
             }
             Err(error) => return Err(error.to_string()),
@@ -95,15 +110,14 @@ pub fn run(
         let done = scene(&loaded, &stations, options, &bench.ceilings, progress)
             .map_err(|error| format!("{}: {error}", entry.name))?;
         bench.rows.extend(done.rows);
-        bench.skipped.extend(done.skipped);
+        let skipped = done.skipped.iter();
+        bench
+            .remarks
+            .extend(skipped.map(|why| format!("not measured: {why}")));
         wrong.extend(done.wrong);
     }
     progress.end();
     Ok(Outcome { bench, wrong })
-}
-
-fn not_timed(error: &GpuError) -> String {
-    format!("{error}; it cannot be measured")
 }
 
 /// An adapter's kernels: trusted and unchecked as they ship, checked if any is the
@@ -123,6 +137,7 @@ fn station<'a>(adapter: &'a Adapter, options: &Options) -> Station<'a> {
     };
     Station {
         adapter,
+        clock: Clock::Device,
         kernels: kernels(false),
         native: adapter.native.as_ref().map(|_| kernels(true)),
     }

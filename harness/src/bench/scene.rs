@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use triptych_gpu::abuffer;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::{Path, Rasterizer};
+use triptych_gpu::timer::Clock;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::counts::Work;
@@ -24,6 +25,7 @@ pub(super) struct Station<'a> {
     pub(super) adapter: &'a Adapter,
     pub(super) kernels: Kernels,
     pub(super) native: Option<Kernels>,
+    pub(super) clock: Clock,
 }
 
 /// A kind of frame, measured.
@@ -118,7 +120,7 @@ pub(super) fn scene(
         let label = format!("gpu@{}/{}", station.adapter.gpu.name, path.name());
         let grid = &grids[&station.adapter.bits(path)];
         match station.rasterizer(path, grid) {
-            Ok(rasterizer) => rasterizers.push((label, rasterizer, grid)),
+            Ok(rasterizer) => rasterizers.push((label, rasterizer, grid, &station.clock)),
             Err(refusal) => done.refused(&format!("{name}: {label}"), refusal),
         }
     }
@@ -132,8 +134,8 @@ pub(super) fn scene(
     };
     progress.begin(&format!("{name}: comparing"), options.runs + WARM_UP);
     let mut legs = Vec::new();
-    for (label, rasterizer, grid) in &rasterizers {
-        match Leg::new(label.clone(), rasterizer, grid, what) {
+    for (label, rasterizer, grid, clock) in &rasterizers {
+        match Leg::new(label.clone(), rasterizer, grid, what, clock) {
             Ok(leg) => legs.push(leg),
             Err(refusal) => done.refused(name, refusal),
         }
@@ -195,6 +197,7 @@ fn rows(
             .seconds()
             .zip(reference.into_iter().flat_map(Measured::seconds));
         let (what, seconds) = bound.of(leg, m.work);
+        let clock = bound.clock(leg);
         let median = |seconds: &[f64]| 1000.0 * Spread::of(seconds.iter().copied()).median;
         Row {
             scene: loaded.name.clone(),
@@ -202,6 +205,7 @@ fn rows(
             fragments: grid.counts.fragments,
             longest,
             leg: leg.to_owned(),
+            clock: clock.to_owned(),
             method: m.method,
             layers: m.layers,
             all: m.layers >= longest,

@@ -1,5 +1,7 @@
 //! The spec on one core, measured.
 
+use std::time::Duration;
+
 use triptych_gpu::abuffer::Part;
 use triptych_spec::abuffer::{build, nearest_layers, opaque, resolve, sort};
 use triptych_spec::scene::Scene;
@@ -43,19 +45,22 @@ impl<'g> Core<'g> {
         let depth_test = self.plan.depth_test;
         let (lists, time) = timed(|| build(scene, primitives, &run.opaque, depth_test, u32::MAX));
         before.push(time);
-        let (mut order, mut blend) = (Vec::new(), Vec::new());
-        for n in &self.grid.layers {
-            let (kept, time) = timed(|| nearest_layers(&lists, *n));
-            order.push(time);
-            blend.push(timed(|| resolve(scene, primitives, &run.opaque, &kept)).1);
+        let layers = &self.grid.layers;
+        let mut order = vec![Duration::ZERO; layers.len()];
+        let mut blend = order.clone();
+        for at in 0..layers.len() {
+            // None is always first.
+            let at = (at + round as usize) % layers.len();
+            let (kept, time) = timed(|| nearest_layers(&lists, layers[at]));
+            order[at] = time;
+            blend[at] = timed(|| resolve(scene, primitives, &run.opaque, &kept)).1;
         }
         let (sorted, time) = timed(|| sort(&lists));
         let all = timed(|| resolve(scene, primitives, &run.opaque, &sorted)).1;
         if round >= WARM_UP {
             let times = [before, order, blend, vec![time, all]];
-            self.rounds.push(
-                times.map(|times| times.iter().map(std::time::Duration::as_secs_f64).collect()),
-            );
+            self.rounds
+                .push(times.map(|times| times.iter().map(Duration::as_secs_f64).collect()));
         }
     }
 

@@ -15,6 +15,7 @@ use super::run_info::today;
 use crate::bench::{Bench, Options, Progress, SCENES, csv, markdown, run as measure, svg, table};
 use crate::corpus;
 use crate::output::{complain, stdout};
+use crate::text::clean;
 use triptych_gpu::raster::Path;
 
 /// Among the results, what the report reads.
@@ -99,8 +100,8 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     for line in table::lines(&outcome.bench) {
         writeln!(out, "{}", line.trim_end())?;
     }
-    for skipped in &outcome.bench.skipped {
-        writeln!(out, "not measured: {skipped}")?;
+    for remark in &outcome.bench.remarks {
+        writeln!(out, "{}", clean(remark))?;
     }
     args.write(&outcome.bench)?;
     outcome.wrong.iter().for_each(complain);

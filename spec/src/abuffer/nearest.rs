@@ -16,30 +16,31 @@ use crate::raster::Fragment;
 /// drawn, and the opaque surface or the background shows in its place. With `n` 0 that
 /// is all there is. Twin: `nearest_layers` in `gpu/src/nearest.wgsl`.
 pub fn nearest_layers(lists: &Lists, n: u32) -> Sorted {
+    let n = n as usize;
+    let most = lists.nodes.len().min(n.saturating_mul(lists.heads.len()));
     let mut sorted = Sorted {
         offsets: vec![0],
-        fragments: Vec::new(),
+        fragments: Vec::with_capacity(most),
     };
-    let mut kept: Vec<Fragment> = Vec::new();
     for (pixel, &head) in (0_u32..).zip(&lists.heads) {
+        let start = sorted.fragments.len();
         let mut at = head;
         while at != EOL {
             let node = lists.nodes[at as usize];
-            let order = |f: &Fragment| (f.key, f.prim) < (node.key, node.prim);
-            let place = kept.partition_point(order);
-            if place < n as usize {
-                kept.truncate(n as usize - 1);
+            let kept = &sorted.fragments[start..];
+            let place = kept.partition_point(|f| (f.key, f.prim) < (node.key, node.prim));
+            if place < n {
+                sorted.fragments.truncate(start + n - 1);
                 let fragment = Fragment {
                     pixel,
                     prim: node.prim,
                     key: node.key,
                     mask: node.mask,
                 };
-                kept.insert(place, fragment);
+                sorted.fragments.insert(start + place, fragment);
             }
             at = node.next;
         }
-        sorted.fragments.append(&mut kept);
         let end = u32::try_from(sorted.fragments.len()).expect("fewer than 2^32 nodes");
         sorted.offsets.push(end);
     }
