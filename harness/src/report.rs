@@ -6,6 +6,7 @@
 //! forbids every other script and every request.
 
 mod base64;
+mod bench;
 mod figures;
 mod glossary;
 mod head;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::again::Again;
+use crate::bench::Bench;
 use crate::digest;
 use crate::json::{Merged, MutantRun};
 use crate::picture::Image;
@@ -42,6 +44,8 @@ pub struct ReportInput {
     pub scenes: Vec<SceneReport>,
     /// Runs of mutants: what the harness finds where something is wrong.
     pub mutants: Vec<MutantRun>,
+    /// The last measurement of time against error.
+    pub bench: Option<Bench>,
 }
 
 /// What was run, where and with what.
@@ -171,6 +175,7 @@ impl ReportInput {
                 .map(scene)
                 .collect(),
             mutants: merged.mutants.clone(),
+            bench: None,
         }
     }
 
@@ -237,6 +242,7 @@ pub fn page(input: &ReportInput) -> Markup {
                         }
                     }
                     (mutants::section(&input.mutants))
+                    (bench::section(input.bench.as_ref()))
                     (head::run(&input.run))
                     (glossary::section())
                 }

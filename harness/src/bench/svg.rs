@@ -94,7 +94,7 @@ fn entry(at: usize, leg: &str) -> Markup {
     let y = 68.0 + LEGEND_LINE * (at / LEGEND_COLUMNS) as f64;
     let style = at % STYLES;
     html! {
-        line.line class=(format!("s{style}")) x1=(x - 8.0) x2=(x + 20.0) y1=(y) y2=(y) {}
+        line class=(format!("line s{style}")) x1=(x - 8.0) x2=(x + 20.0) y1=(y) y2=(y) {}
         (mark(style, [x + 6.0, y]))
         text x=(x + 28.0) y=(y + 4.0) { (clean(leg)) }
     }
@@ -114,7 +114,7 @@ fn panel(bench: &Bench, legs: &[&str], scene: &str) -> Markup {
         @for (number, leg) in legs.iter().enumerate() {
             @let own: Vec<&Row> = rows.iter().copied().filter(|row| row.leg == *leg).collect();
             @let points: Vec<String> = own.iter().map(|r| at(r)).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-            polyline.line class=(format!("s{}", number % STYLES)) points=(points.join(" ")) {}
+            polyline class=(format!("line s{}", number % STYLES)) points=(points.join(" ")) {}
             @for row in own { (mark(number % STYLES, at(row))) }
         }
     }

@@ -11,15 +11,20 @@ use super::Verdict;
 use super::adapters::{adapters, could_not_run};
 use super::kernel::{Kernels, kernels};
 use super::replay::PathName;
+use super::results::Results;
 use super::run_info::today;
 use crate::bench::{Bench, Options, Progress, SCENES, csv, markdown, run as measure, svg, table};
 use crate::corpus;
+use crate::mesh::Intake;
 use crate::output::{complain, stdout};
 use crate::text::clean;
 use triptych_gpu::raster::Path;
 
 /// Among the results, what the report reads.
 pub const FILE: &str = "abuffer.json";
+
+/// Bytes that it may have; a row has about a thousand.
+const FILE_MAX: u64 = 1 << 26;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -173,4 +178,25 @@ fn reports() -> PathBuf {
 /// Where the results of a run go, in the folder of the report.
 fn folder(out: &FilePath) -> PathBuf {
     out.join("bench")
+}
+
+/// The last measurement, for the report; a file that cannot be read is worth a remark.
+pub(super) fn last_bench(out: &FilePath, results: &mut Results) -> anyhow::Result<Option<Bench>> {
+    let file = folder(out).join(FILE);
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let text = Intake::from_disk().read(&file, FILE_MAX);
+    let text = text.map_err(|error| error.to_string());
+    let bench = text.and_then(|text| {
+        let parsed = serde_json::from_slice(&text);
+        parsed.map_err(|error| format!("{}: {error}", file.display()))
+    });
+    match bench {
+        Ok(bench) => Ok(Some(bench)),
+        Err(error) => {
+            results.reporter.remark(&error)?;
+            Ok(None)
+        }
+    }
 }

@@ -11,6 +11,7 @@ use triptych_gpu::raster::Path;
 
 use super::Verdict;
 use super::adapters::{adapters, could_not_run};
+use super::bench::last_bench;
 use super::kernel::{Kernels, all_run, kernels};
 use super::mutants::last_mutants;
 use super::results::Results;
@@ -168,6 +169,7 @@ fn publish(
     summary: &Summary,
 ) -> anyhow::Result<PathBuf> {
     let mutants = last_mutants(out, &mut results)?;
+    let bench = last_bench(out, &mut results)?;
     let Results {
         mut reporter,
         scenes,
@@ -178,6 +180,7 @@ fn publish(
         run,
         scenes,
         mutants,
+        bench,
     };
     report::write(&page, &input).with_context(|| format!("cannot write {}", page.display()))?;
     reporter.finish(summary, Some(&page))?;

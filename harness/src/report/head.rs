@@ -52,7 +52,7 @@ pub fn banner(input: &ReportInput, summary: &Summary) -> Markup {
         }
         nav aria-label="Sections" {
             a href="#scenes" { "Scenes" } " · " a href="#details" { "Scene by scene" } " · "
-            a href="#mutants" { "Mutants" } " · " a href="#run" { "This run" } " · " a href="#glossary" { "Glossary" }
+            a href="#mutants" { "Mutants" } " · " a href="#bench" { "Time against error" } " · " a href="#run" { "This run" } " · " a href="#glossary" { "Glossary" }
         }
     }
 }

@@ -65,6 +65,7 @@ fn input() -> ReportInput {
         },
         scenes: vec![bad, good],
         mutants: vec![mutants::tests::example()],
+        bench: Some(bench::tests::example()),
     }
 }
 
@@ -242,6 +243,7 @@ fn a_report_of_rows_alone() {
         rows,
         summary,
         mutants: Vec::new(),
+        bench: None,
     };
     let input = ReportInput::from_rows(RunInfo::default(), &merged);
     assert_eq!(input.summary(), merged.summary);
