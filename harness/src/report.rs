@@ -277,4 +277,7 @@ fn text(untrusted: &str) -> Markup {
 }
 
 #[cfg(test)]
+pub(crate) use bench::tests::example as bench_example;
+
+#[cfg(test)]
 mod tests;

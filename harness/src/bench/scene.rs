@@ -80,6 +80,14 @@ impl Done {
     }
 }
 
+/// A leg's triangles on its device.
+struct Prepared<'r> {
+    label: String,
+    rasterizer: Rasterizer<'r>,
+    grid: &'r Grid,
+    clock: &'r Clock,
+}
+
 /// Measures a scene.
 pub(super) fn scene(
     loaded: &Loaded,
@@ -88,81 +96,113 @@ pub(super) fn scene(
     ceilings: &[Ceilings],
     progress: &Progress,
 ) -> Result<Done, String> {
-    let (name, scene) = (&loaded.name, &loaded.scene);
-    let plan = Plan::new(scene, true);
+    let plan = Plan::new(&loaded.scene, true);
     let mut done = Done::default();
-    let paths = || {
-        stations
-            .iter()
-            .flat_map(|s| options.paths.iter().map(move |p| (s, *p)))
-    };
-    let mut grids = BTreeMap::from([(SUBPIXEL_BITS, Grid::new(scene, &plan, SUBPIXEL_BITS)?)]);
-    for (station, path) in paths() {
-        let bits = station.adapter.bits(path);
-        if !grids.contains_key(&bits) {
-            grids.insert(bits, Grid::new(scene, &plan, bits)?);
-        }
-    }
-    let longest = grids
-        .values()
-        .map(|g| g.counts.longest())
-        .max()
-        .unwrap_or(0);
-    if longest == 0 {
-        done.skipped
-            .push(format!("{name}: nothing transparent is seen"));
+    let grids = grids(loaded, &plan, stations, options)?;
+    if grids.values().all(|grid| grid.counts.longest() == 0) {
+        let words = format!("{}: nothing transparent is seen", loaded.name);
+        done.skipped.push(words);
         return Ok(done);
     }
-    let wanted = options.layers.as_deref();
-    grids.values_mut().for_each(|grid| grid.draw(scene, wanted));
-    let mut rasterizers = Vec::new();
-    for (station, path) in paths() {
+    let mut prepared = Vec::new();
+    for (station, path) in pairs(stations, options) {
         let label = format!("gpu@{}/{}", station.adapter.gpu.name, path.name());
         let grid = &grids[&station.adapter.bits(path)];
         match station.rasterizer(path, grid) {
-            Ok(rasterizer) => rasterizers.push((label, rasterizer, grid, &station.clock)),
-            Err(refusal) => done.refused(&format!("{name}: {label}"), refusal),
+            Ok(rasterizer) => prepared.push(Prepared {
+                label,
+                rasterizer,
+                grid,
+                clock: &station.clock,
+            }),
+            Err(refusal) => done.refused(&format!("{}: {label}", loaded.name), refusal),
         }
     }
-    let what = abuffer::Options {
+    let rounds = options.runs + WARM_UP;
+    progress.begin(&format!("{}: comparing", loaded.name), rounds);
+    let mut legs = legs(loaded, &plan, &prepared, &mut done);
+    let spec = &grids[&SUBPIXEL_BITS];
+    let mut core = Core::new(&loaded.scene, &plan, spec);
+    progress.begin(&format!("{}: measuring", loaded.name), rounds);
+    for round in 0..rounds {
+        core.round(round);
+        legs.retain_mut(|leg| keep(leg.round(round), &loaded.name, &mut done));
+        progress.step();
+    }
+    legs.retain(|leg| keep(leg.compare().map(drop), &loaded.name, &mut done));
+    let bound = Bound(ceilings);
+    let own = rows(loaded, spec, "spec", &core.measured(), &bound);
+    done.rows.extend(own);
+    for leg in &legs {
+        let measured = leg.measured();
+        if measured.iter().any(|m| m.seconds().any(|s| s <= 0.0)) {
+            let reason = Refusal::Skipped("its timestamps stand still".to_owned());
+            done.refused(&format!("{}: {}", loaded.name, leg.label), reason);
+            continue;
+        }
+        let own = rows(loaded, leg.grid, &leg.label, &measured, &bound);
+        done.rows.extend(own);
+    }
+    Ok(done)
+}
+
+/// Every adapter with each path.
+fn pairs<'s, 'a>(
+    stations: &'s [Station<'a>],
+    options: &'s Options,
+) -> impl Iterator<Item = (&'s Station<'a>, Path)> {
+    let of = |station| options.paths.iter().map(move |path| (station, *path));
+    stations.iter().flat_map(of)
+}
+
+/// What the spec says on each sub-pixel grid that a leg has, and on its own.
+fn grids(
+    loaded: &Loaded,
+    plan: &Plan,
+    stations: &[Station<'_>],
+    options: &Options,
+) -> Result<BTreeMap<u32, Grid>, String> {
+    let mut grids = BTreeMap::new();
+    let bits = pairs(stations, options).map(|(station, path)| station.adapter.bits(path));
+    for bits in bits.chain([SUBPIXEL_BITS]) {
+        if !grids.contains_key(&bits) {
+            let mut grid = Grid::new(&loaded.scene, plan, bits)?;
+            grid.draw(&loaded.scene, options.layers.as_deref());
+            grids.insert(bits, grid);
+        }
+    }
+    Ok(grids)
+}
+
+/// The legs whose pictures are right.
+fn legs<'r>(
+    loaded: &Loaded,
+    plan: &Plan,
+    prepared: &'r [Prepared<'r>],
+    done: &mut Done,
+) -> Vec<Leg<'r>> {
+    let options = abuffer::Options {
         given: None,
         capacity: None,
         opaque: plan.opaque,
         lists: plan.lists,
         depth_test: plan.depth_test,
-        background: scene.background,
+        background: loaded.scene.background,
     };
-    progress.begin(&format!("{name}: comparing"), options.runs + WARM_UP);
     let mut legs = Vec::new();
-    for (label, rasterizer, grid, clock) in &rasterizers {
-        match Leg::new(label.clone(), rasterizer, grid, what, clock) {
+    for Prepared {
+        label,
+        rasterizer,
+        grid,
+        clock,
+    } in prepared
+    {
+        match Leg::new(label.clone(), rasterizer, grid, options, clock) {
             Ok(leg) => legs.push(leg),
-            Err(refusal) => done.refused(name, refusal),
+            Err(refusal) => done.refused(&loaded.name, refusal),
         }
     }
-    let mut core = Core::new(scene, &plan, &grids[&SUBPIXEL_BITS]);
-    progress.begin(&format!("{name}: measuring"), options.runs + WARM_UP);
-    for round in 0..WARM_UP + options.runs {
-        core.round(round);
-        legs.retain_mut(|leg| keep(leg.round(round), name, &mut done));
-        progress.step();
-    }
-    legs.retain(|leg| keep(leg.compare().map(drop), name, &mut done));
-    let bound = Bound(ceilings);
-    let spec = &grids[&SUBPIXEL_BITS];
-    done.rows
-        .extend(rows(loaded, spec, "spec", &core.measured(), &bound));
-    for leg in &legs {
-        let measured = leg.measured();
-        if measured.iter().any(|m| m.seconds().any(|s| s <= 0.0)) {
-            let reason = "its timestamps stand still".to_owned();
-            done.refused(&format!("{name}: {}", leg.label), Refusal::Skipped(reason));
-            continue;
-        }
-        done.rows
-            .extend(rows(loaded, leg.grid, &leg.label, &measured, &bound));
-    }
-    Ok(done)
+    legs
 }
 
 /// Whether a leg goes on.

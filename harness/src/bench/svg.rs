@@ -23,9 +23,9 @@ const STYLES: usize = 8;
 const WIDTH: f64 = 960.0;
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = 870.0;
-const PANEL: f64 = 300.0;
+const PANEL: f64 = 290.0;
 /// Of a panel, from its top.
-const PLOT: [f64; 2] = [44.0, 240.0];
+const PLOT: [f64; 2] = [52.0, 240.0];
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_COLUMNS: usize = 3;
 
@@ -78,6 +78,9 @@ pub fn svg(bench: &Bench) -> Markup {
             rect.ground width=(WIDTH) height=(height) {}
             text x="24" y="28" font-size="17" font-weight="600" { "Time against error: A-buffer, nearest layers" }
             text.soft x="24" y="46" { (clean(&format!("{}, {}", bench.date, bench.machine.cpu))) }
+            text.soft x=(RIGHT) y="46" text-anchor="end" {
+                "exact*: equal, or unequal by rounding alone (above 100 dB)"
+            }
             @for (at, leg) in legs.iter().enumerate() { (entry(at, leg)) }
             @for (at, scene) in scenes.iter().enumerate() {
                 g transform=(format!("translate(0 {})", top + PANEL * at as f64)) {
@@ -107,7 +110,7 @@ fn panel(bench: &Bench, legs: &[&str], scene: &str) -> Markup {
     let at = |row: &Row| [times.at(row.time.median), errors.at(row.psnr)];
     html! {
         text x="24" y="20" font-weight="600" { (clean(&super::table::heading(bench, scene))) }
-        text.soft x="24" y="38" { "PSNR, dB" }
+        text.soft x="24" y="40" { "PSNR, dB" }
         (errors.grid([LEFT, RIGHT]))
         (times.grid(PLOT))
         (levels(&rows, &errors))
@@ -121,13 +124,15 @@ fn panel(bench: &Bench, legs: &[&str], scene: &str) -> Markup {
 }
 
 /// The numbers of layers, beside where the first leg's points lie; of those that would
-/// overlap, the first.
+/// overlap, not all.
 fn levels(rows: &[&Row], errors: &Vertical) -> Markup {
     let leg = rows.first().map(|row| row.leg.as_str());
     let own = rows.iter().filter(|row| Some(row.leg.as_str()) == leg);
     let mut shown: Vec<(f64, String)> = Vec::new();
-    // From the top, where all layers are.
-    for row in own.rev() {
+    // All layers first, then one, then the others from there on.
+    let mut own: Vec<&&Row> = own.collect();
+    own.sort_by_key(|row| (!row.all, row.layers));
+    for row in own {
         let y = errors.at(row.psnr);
         if shown.iter().all(|(other, _)| (other - y).abs() >= 12.0) {
             let words = match (row.all, row.layers) {
@@ -142,4 +147,46 @@ fn levels(rows: &[&Row], errors: &Vertical) -> Markup {
         line.grid x1=(RIGHT) x2=(RIGHT + 6.0) y1=(y) y2=(y) {}
         text x=(RIGHT + 10.0) y=(y + 4.0) { (words) }
     } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::bench_example;
+
+    /// A viewer of XML refuses all that a browser forgives in HTML.
+    #[test]
+    fn the_file_is_sound_xml() {
+        let text = file(&bench_example());
+        let mut open = Vec::new();
+        for tag in text.split('<').skip(1) {
+            let (tag, _) = tag.split_once('>').expect("a tag ends");
+            let name = tag
+                .split([' ', '/'])
+                .find(|n| !n.is_empty())
+                .expect("a name");
+            match (tag.starts_with('/'), tag.ends_with('/')) {
+                (true, _) => assert_eq!(open.pop(), Some(name), "closes what is open"),
+                (false, true) => {}
+                (false, false) => open.push(name),
+            }
+            let mut names: Vec<&str> = tag.split('"').step_by(2).map(str::trim).collect();
+            names.retain(|n| n.ends_with('='));
+            let all = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), all, "an attribute twice: <{tag}>");
+        }
+        assert_eq!(open, [""; 0], "all is closed");
+        assert!(!text.contains("script>"), "no script: {text}");
+    }
+
+    #[test]
+    fn a_point_for_each_row_and_a_line_for_each_leg() {
+        let text = file(&bench_example());
+        // Those of the legend as well.
+        assert_eq!(text.matches("class=\"mark ").count(), 3 + 2, "{text}");
+        assert_eq!(text.matches("<polyline").count(), 2, "{text}");
+        assert!(!text.contains("NaN") && !text.contains("inf\""), "{text}");
+    }
 }

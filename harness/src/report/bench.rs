@@ -33,7 +33,7 @@ pub fn section(bench: Option<&Bench>) -> Markup {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::bench::{Ceilings, Machine, Method, Row, Spread};
 

@@ -37,10 +37,15 @@ impl Horizontal {
         self.place[0] + share * (self.place[1] - self.place[0])
     }
 
-    /// Vertical lines at 1, 2 and 5 times the powers of ten, with their numbers.
+    /// Vertical lines at 1, 2 and 5 times the powers of ten, or at more where the axis is
+    /// short, with their numbers.
     pub(super) fn grid(&self, [top, bottom]: [f64; 2]) -> Markup {
+        let steps: &[f64] = match self.high - self.low {
+            ..1.2 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+            _ => &[1.0, 2.0, 5.0],
+        };
         let powers = (-6..9).map(|power| 10_f64.powi(power));
-        let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * power));
+        let ticks = powers.flat_map(|power| steps.iter().map(move |step| step * power));
         let inside = |t: &f64| (self.low..=self.high).contains(&t.log10());
         let middle = f64::midpoint(self.place[0], self.place[1]);
         html! {
