@@ -11,6 +11,9 @@ use crate::observe::{Observed, Spec};
 use crate::plan::Plan;
 use crate::replay::spec::SpecRun;
 
+/// The spec's picture, with bounds.
+type Picture = Observed<Spec, Vec<[Bounded; 3]>>;
+
 /// The spec on one grid.
 pub(super) struct Grid {
     pub(super) run: SpecRun,
@@ -18,8 +21,8 @@ pub(super) struct Grid {
     /// The numbers of layers that are measured.
     pub(super) layers: Vec<u32>,
     /// The picture of so many nearest layers, where that is not the exact one.
-    pictures: Vec<(u32, Observed<Spec, Vec<[Bounded; 3]>>)>,
-    exact: Observed<Spec, Vec<[Bounded; 3]>>,
+    pictures: Vec<(u32, Picture)>,
+    exact: Picture,
 }
 
 impl Grid {
@@ -51,7 +54,7 @@ impl Grid {
     }
 
     /// The picture of so many nearest layers.
-    pub(super) fn picture(&self, layers: u32) -> &Observed<Spec, Vec<[Bounded; 3]>> {
+    pub(super) fn picture(&self, layers: u32) -> &Picture {
         let drawn = self.pictures.iter().find(|(n, _)| *n == layers);
         drawn.map_or(&self.exact, |(_, picture)| picture)
     }

@@ -1,6 +1,7 @@
 //! One scene on every leg: set up, compared, and measured side by side.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use triptych_gpu::abuffer;
 use triptych_gpu::kernel::Kernels;
@@ -165,10 +166,10 @@ fn grids(
     let mut grids = BTreeMap::new();
     let bits = pairs(stations, options).map(|(station, path)| station.adapter.bits(path));
     for bits in bits.chain([SUBPIXEL_BITS]) {
-        if !grids.contains_key(&bits) {
+        if let Entry::Vacant(vacant) = grids.entry(bits) {
             let mut grid = Grid::new(&loaded.scene, plan, bits)?;
             grid.draw(&loaded.scene, options.layers.as_deref());
-            grids.insert(bits, grid);
+            vacant.insert(grid);
         }
     }
     Ok(grids)

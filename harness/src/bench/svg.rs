@@ -57,11 +57,16 @@ const STYLE: &str = "
 
 /// The front by itself, as a file.
 pub fn file(bench: &Bench) -> String {
-    format!("{}\n", svg(bench).into_string())
+    let space = "http://www.w3.org/2000/svg";
+    format!("{}\n", front(bench, Some(space)).into_string())
 }
 
-/// The front as an element.
-pub fn svg(bench: &Bench) -> Markup {
+/// The front as an element of a page, which knows what an SVG is.
+pub fn element(bench: &Bench) -> Markup {
+    front(bench, None)
+}
+
+fn front(bench: &Bench, space: Option<&str>) -> Markup {
     let legs = bench.legs();
     let legend = LEGEND_LINE * legs.len().div_ceil(LEGEND_COLUMNS) as f64;
     let top = 60.0 + legend;
@@ -72,7 +77,7 @@ pub fn svg(bench: &Bench) -> Markup {
         bench.date, bench.machine.slug
     );
     html! {
-        svg.front xmlns="http://www.w3.org/2000/svg" role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
+        svg.front xmlns=[space] role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
             title { (clean(&words)) }
             style { (PreEscaped(STYLE)) }
             rect.ground width=(WIDTH) height=(height) {}

@@ -24,7 +24,7 @@ pub fn section(bench: Option<&Bench>) -> Markup {
                         @for remark in &bench.remarks { li { (text(remark)) } }
                     }
                     div.scroll tabindex="0" role="region" aria-label="Front of time against error" {
-                        (svg::svg(bench))
+                        (svg::element(bench))
                     }
                 },
             }

@@ -243,7 +243,6 @@ fn a_report_of_rows_alone() {
         rows,
         summary,
         mutants: Vec::new(),
-        bench: None,
     };
     let input = ReportInput::from_rows(RunInfo::default(), &merged);
     assert_eq!(input.summary(), merged.summary);
