@@ -17,7 +17,7 @@ use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
 
 /// The files with entry points.
-const ROOTS: [&str; 3] = ["abuffer", "raster", "vertex"];
+const ROOTS: [&str; 5] = ["abuffer", "ceiling", "nearest", "raster", "vertex"];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
 const STORAGE_BUFFERS: usize = 8;
@@ -228,7 +228,8 @@ fn baseline_programs_need_no_capability() {
         // The two forms differ, so that both are tested: 64-bit integers prove it.
         let wide = |t: &naga::Type| matches!(t.inner, TypeInner::Scalar(s) if s.width == 8);
         let has_wide = root.program.module.types.iter().any(|(_, t)| wide(t));
-        let expects_wide = root.native && !root.name.starts_with("vertex");
+        let narrow = ["ceiling", "vertex"];
+        let expects_wide = root.native && !narrow.iter().any(|n| root.name.starts_with(n));
         assert_eq!(has_wide, expects_wide, "64-bit integers in {}", root.name);
     }
 }
@@ -269,7 +270,10 @@ fn vertices_are_placed_without_inexact_operations() {
             seen += 1;
         }
     }
-    assert_eq!(seen, 8, "two functions in two programs of two forms each");
+    assert_eq!(
+        seen, 12,
+        "two functions in three programs of two forms each"
+    );
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use naga::ShaderStage;
 use triptych_gpu::wgsl::Sources;
 use triptych_harness::plan::Plan;
-use triptych_harness::registry::{FAMILIES, Family, PLACE, stages};
+use triptych_harness::registry::{FAMILIES, Family, MEASURED, PLACE, stages};
 use triptych_spec::scene::{Scene, Size};
 
 fn root() -> PathBuf {
@@ -34,6 +34,11 @@ fn read(path: &Path) -> String {
 
 /// Functions whose documentation begins with "Stage `name`", with that name.
 fn documented_stages(family: &Family) -> Vec<(String, String)> {
+    documented(family, "/// Stage `")
+}
+
+/// Functions whose documentation begins so, with the name that follows.
+fn documented(family: &Family, beginning: &str) -> Vec<(String, String)> {
     let source = root().join("spec/src").join(family.name);
     let mut paths = vec![source.with_extension("rs")];
     paths.extend(files(&source, "rs"));
@@ -41,7 +46,7 @@ fn documented_stages(family: &Family) -> Vec<(String, String)> {
     for path in paths {
         let mut named: Option<String> = None;
         for line in read(&path).lines() {
-            if let Some(rest) = line.strip_prefix("/// Stage `") {
+            if let Some(rest) = line.strip_prefix(beginning) {
                 named = rest.split('`').next().map(str::to_owned);
             } else if let Some(rest) = line.strip_prefix("pub fn ") {
                 let end = rest.find(['(', '<']).expect("a function has parameters");
@@ -113,7 +118,39 @@ fn entry_points_are_those_of_the_wgsl() {
     }
 }
 
-/// Only a family's own file and place.wgsl may have entry points: what is in others
+/// What is measured beside the stages: its entry points, and what the spec says of it.
+#[test]
+fn measured_kernels_are_those_of_the_wgsl() {
+    let compute = |file: &str| -> BTreeSet<String> {
+        let program = Sources::shipped(false).link(file);
+        let program = program.and_then(triptych_gpu::wgsl::Linked::parse);
+        let module = program.unwrap_or_else(|e| panic!("{e}")).module;
+        let all = module.entry_points.iter();
+        let compute = all.filter(|e| e.stage == ShaderStage::Compute);
+        compute.map(|e| e.name.clone()).collect()
+    };
+    for measured in MEASURED {
+        let others = measured.over.map(compute).unwrap_or_default();
+        let own: BTreeSet<String> = compute(measured.file)
+            .difference(&others)
+            .cloned()
+            .collect();
+        let listed: BTreeSet<String> = measured.entries.iter().map(|e| (*e).to_owned()).collect();
+        assert_eq!(own, listed, "{}", measured.file);
+    }
+    let of_spec = FAMILIES
+        .iter()
+        .flat_map(|f| documented(f, "/// Technique `"));
+    let listed = MEASURED.iter().filter_map(|m| m.spec);
+    let listed: Vec<_> = listed.map(|s| (s.to_owned(), s.to_owned())).collect();
+    assert_eq!(
+        of_spec.collect::<Vec<_>>(),
+        listed,
+        "techniques of the spec"
+    );
+}
+
+/// Only a family's own file, what is measured and place.wgsl may have entry points: what is in others
 /// would be seen by no family, or by several.
 #[test]
 fn entry_points_are_in_the_families_files() {
@@ -124,7 +161,8 @@ fn entry_points_are_in_the_families_files() {
         let kinds = ["@compute", "@fragment", "@vertex"];
         let text = read(&path);
         let has = text.lines().any(|l| kinds.iter().any(|k| l.starts_with(k)));
-        let may = stem == PLACE || FAMILIES.iter().any(|f| f.name == stem);
+        let measured = MEASURED.iter().any(|m| m.file == stem);
+        let may = stem == PLACE || measured || FAMILIES.iter().any(|f| f.name == stem);
         assert_eq!(
             has,
             may,

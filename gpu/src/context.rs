@@ -6,6 +6,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::error::GpuError;
 
+/// What a device has beyond WebGPU's defaults, if its adapter does: 64-bit integers for
+/// path `native`, timestamps for `triptych bench`.
+const FEATURES: wgpu::Features =
+    wgpu::Features::SHADER_INT64.union(wgpu::Features::TIMESTAMP_QUERY);
+
 /// Which adapters a run is about.
 pub fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -48,8 +53,8 @@ pub struct Gpu {
 
 impl Gpu {
     /// Opens a device with WebGPU's default limits, buffers as large as the adapter
-    /// allows, and 64-bit integers if it has them: whatever baseline kernels need
-    /// beyond the default is an error on every adapter, not only on small ones.
+    /// allows, 64-bit integers and timestamps if it has them: whatever baseline kernels
+    /// need beyond the default is an error on every adapter, not only on small ones.
     ///
     /// # Errors
     /// The driver's reason.
@@ -70,7 +75,7 @@ impl Gpu {
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("triptych"),
-            required_features: adapter.features() & wgpu::Features::SHADER_INT64,
+            required_features: adapter.features() & FEATURES,
             required_limits: limits,
             ..Default::default()
         };
@@ -99,6 +104,13 @@ impl Gpu {
         self.device
             .features()
             .contains(wgpu::Features::SHADER_INT64)
+    }
+
+    /// Whether the adapter tells when a pass began and ended.
+    pub fn has_timestamps(&self) -> bool {
+        self.device
+            .features()
+            .contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// The largest buffer that a kernel may see, in bytes.

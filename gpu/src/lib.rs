@@ -6,11 +6,13 @@
 //! the spec, only its data types.
 
 pub mod abuffer;
+pub mod ceiling;
 pub mod context;
 pub mod error;
 pub mod frame;
 pub mod kernel;
 pub mod pass;
 pub mod raster;
+pub mod timer;
 pub mod vertex;
 pub mod wgsl;

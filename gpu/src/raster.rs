@@ -2,21 +2,23 @@
 
 mod attempts;
 mod cover;
+mod ready;
 mod work;
 
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use triptych_spec::scene::Size;
-use triptych_spec::vertex::{GUARD, Primitives, guard_origin};
+use triptych_spec::vertex::Primitives;
 
 use crate::context::Gpu;
 use crate::error::GpuError;
-use crate::frame::{Band, Frame, WORKGROUP};
-use crate::kernel::{Kernel, Kernels, Pipeline, TARGET_FORMAT};
+use crate::frame::{Band, Frame};
+use crate::kernel::{Kernel, Kernels, TARGET_FORMAT};
 use crate::pass::Pass;
 pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
+pub(crate) use ready::Ready;
 pub use work::Work;
 use work::sampled_rows;
 
@@ -110,32 +112,10 @@ impl<'g> Rasterizer<'g> {
         work: &Work,
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Duration, GpuError> {
-        let kernel = match self.path {
-            Path::Compute | Path::Native => self.kernels.compute(self.gpu, file, stage)?,
-            Path::Fragment => {
-                self.kernels
-                    .fragment(self.gpu, file, &format!("{stage}_fragment"))?
-            }
-        };
         let mut encoder = self.gpu.encoder();
-        for batch in &work.batches {
-            let frame = Frame {
-                work_first: batch.first,
-                work_count: batch.count,
-                items: batch.items,
-                ..frame
-            };
-            let uniform = self.gpu.uniform("frame", &frame)?;
-            let mut all = vec![
-                ("frame", &uniform),
-                ("corners", &self.corners),
-                ("work", &work.buffer),
-                ("faces", &self.faces),
-            ];
-            all.extend_from_slice(buffers);
-            let group = kernel.bind(self.gpu, &all);
-            self.record(&mut encoder, &kernel, &group, &frame);
-            self.note(stage, true, &kernel);
+        for pass in self.ready(file, stage, frame, work, buffers)? {
+            pass.record(self, &mut encoder, None);
+            self.note(stage, true, &pass.kernel);
         }
         let start = Instant::now();
         self.gpu.submit(encoder)?;
@@ -159,36 +139,6 @@ impl<'g> Rasterizer<'g> {
     pub fn frame(&self, band: Band) -> Frame {
         Frame::new(self.size, self.bits, band)
     }
-
-    fn record(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        kernel: &Kernel,
-        group: &wgpu::BindGroup,
-        frame: &Frame,
-    ) {
-        match &kernel.pipeline {
-            Pipeline::Compute(pipeline) => {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(frame.items.div_ceil(WORKGROUP), 1, 1);
-            }
-            Pipeline::Render(pipeline) => {
-                let mut pass = begin_render(encoder, &self.target);
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                let side = GUARD as f32;
-                let origin = [
-                    guard_origin(self.size.width),
-                    guard_origin(self.size.height),
-                ];
-                pass.set_viewport(origin[0] as f32, origin[1] as f32, side, side, 0.0, 1.0);
-                pass.set_scissor_rect(0, frame.first_row, self.size.width, frame.rows);
-                pass.draw(0..3 * frame.work_count, 0..1);
-            }
-        }
-    }
 }
 
 /// Runs a compute kernel with one invocation per pixel of a band.
@@ -203,21 +153,10 @@ pub fn per_pixel(
     buffers: &[(&str, &wgpu::Buffer)],
 ) -> Result<Duration, GpuError> {
     let gpu = rasterizer.gpu;
-    let kernel = rasterizer.kernels.compute(gpu, file, stage)?;
-    let uniform = gpu.uniform("frame", &frame)?;
-    let mut all = vec![("frame", &uniform), ("faces", &rasterizer.faces)];
-    all.extend_from_slice(buffers);
-    let group = kernel.bind(gpu, &all);
+    let pass = rasterizer.ready_per_pixel(file, stage, frame, buffers)?;
     let mut encoder = gpu.encoder();
-    if let Pipeline::Compute(pipeline) = &kernel.pipeline {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        // A target of 2048 x 2048 pixels is 65,536 workgroups, one more than allowed
-        // in a row; bands of the full size are split before that.
-        pass.dispatch_workgroups((frame.width * frame.rows).div_ceil(WORKGROUP), 1, 1);
-    }
-    rasterizer.note(stage, false, &kernel);
+    pass.record(rasterizer, &mut encoder, None);
+    rasterizer.note(stage, false, &pass.kernel);
     let start = Instant::now();
     gpu.submit(encoder)?;
     Ok(start.elapsed())
@@ -241,23 +180,4 @@ fn target(gpu: &Gpu, size: Size) -> Result<wgpu::TextureView, GpuError> {
     let bytes = u64::from(size.width) * u64::from(size.height);
     let texture = gpu.make("target", bytes, |device| device.create_texture(&descriptor))?;
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
-}
-
-fn begin_render<'e>(
-    encoder: &'e mut wgpu::CommandEncoder,
-    target: &wgpu::TextureView,
-) -> wgpu::RenderPass<'e> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: None,
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                store: wgpu::StoreOp::Discard,
-            },
-        })],
-        ..Default::default()
-    })
 }

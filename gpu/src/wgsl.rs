@@ -66,8 +66,10 @@ impl Sources {
     pub fn shipped(native: bool) -> Self {
         let mut files = shipped!(
             "abuffer",
+            "ceiling",
             "counter",
             "frame",
+            "nearest",
             "place",
             "raster",
             "triangle",

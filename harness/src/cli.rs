@@ -2,6 +2,7 @@
 //! run.
 
 mod adapters;
+mod bench;
 mod add;
 mod bundle;
 mod doctor;
@@ -48,6 +49,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Measure time against error
+    Bench(bench::Args),
     /// Put a scene into the corpus, replay it, and leave its snapshot for review
     Add(add::Args),
     /// Pack what a machine without a toolchain needs
@@ -69,6 +72,7 @@ enum Command {
 /// Runs the command line that the process was given.
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
+        Command::Bench(args) => bench::run(&args),
         Command::Add(args) => add::run(&args),
         Command::Bundle(args) => bundle::run(&args),
         Command::Doctor => doctor::run(),

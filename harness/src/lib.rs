@@ -3,6 +3,7 @@
 
 pub mod add;
 pub mod again;
+pub mod bench;
 pub mod bundle;
 pub mod cache;
 pub mod calibrate;

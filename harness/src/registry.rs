@@ -80,6 +80,41 @@ pub const FAMILIES: &[Family] = &[
     },
 ];
 
+/// Kernels that are no stage of a replay: `triptych bench` compares and measures them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measured {
+    /// The WGSL file, in which no other has entry points.
+    pub file: &'static str,
+    /// A file that it imports whose own entry points are listed elsewhere.
+    pub over: Option<&'static str>,
+    /// Its compute entry points.
+    pub entries: &'static [&'static str],
+    /// The function of the spec that says what they compute; its documentation begins
+    /// with "Technique" and its name. `None`: they compute nothing that is shown.
+    pub spec: Option<&'static str>,
+}
+
+/// All of them.
+pub const MEASURED: &[Measured] = &[
+    Measured {
+        file: "ceiling",
+        over: None,
+        entries: &["copy", "exchange"],
+        spec: None,
+    },
+    Measured {
+        file: "nearest",
+        over: Some("abuffer"),
+        entries: &[
+            "clear_lists",
+            "clear_progress",
+            "nearest_layers",
+            "nearest_layers_sorted",
+        ],
+        spec: Some("nearest_layers"),
+    },
+];
+
 /// Names of result rows that are no stage, and what they compare.
 pub const ROWS: &[(&str, &str)] = &[
     ("expect", "the spec with a scene's closed-form answers"),

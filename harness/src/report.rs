@@ -6,6 +6,7 @@
 //! forbids every other script and every request.
 
 mod base64;
+mod bench;
 mod budget;
 mod figures;
 mod glossary;
@@ -89,6 +90,7 @@ pub fn page(input: &ReportInput) -> Markup {
                         }
                     }
                     (mutants::section(&input.mutants))
+                    (bench::section(input.bench.as_ref()))
                     (head::run(&input.run))
                     (glossary::section())
                 }
@@ -122,6 +124,9 @@ fn verdict_name(verdict: Verdict) -> &'static str {
 fn text(untrusted: &str) -> Markup {
     html! { (clean(untrusted)) }
 }
+
+#[cfg(test)]
+pub(crate) use bench::tests::example as bench_example;
 
 #[cfg(test)]
 mod tests;

@@ -12,10 +12,13 @@
 //! that overflow can lose that fragment, never a list; depth 1 is
 //! [`crate::vertex::DEPTH_ONE`].
 
+mod nearest;
+
 use crate::bound::{Bounded, TINY, gamma};
 use crate::raster::{Fragment, cover_only};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
+pub use nearest::nearest_layers;
 
 /// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").
 pub const EOL: u32 = u32::MAX;

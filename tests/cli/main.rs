@@ -4,6 +4,7 @@
 //! A target of the harness, whose binary it runs; each test works in a folder of its
 //! own, with a corpus of its own, so that no report of the user's is touched.
 
+mod bench;
 mod contributor;
 mod corpus;
 mod drivers;

@@ -4,7 +4,9 @@
 mod resolve;
 
 use proptest::prelude::*;
-use triptych_spec::abuffer::{EOL, Lists, NOTHING, Node, Opaque, Sorted, build, opaque, sort};
+use triptych_spec::abuffer::{
+    EOL, Lists, NOTHING, Node, Opaque, Sorted, build, nearest_layers, opaque, sort,
+};
 use triptych_spec::raster::Fragment;
 use triptych_spec::scene::{Scene, Triangle};
 use triptych_spec::vertex::Primitives;
@@ -202,6 +204,19 @@ proptest! {
             list.retain(|f| f.key < end[pixel]);
         }
         prop_assert_eq!(&all, &visible);
+    }
+
+    /// The nearest layers are the beginning of each sorted list, whatever came first.
+    #[test]
+    fn nearest_layers_begin_sorted_lists(
+        layers in layers(0..10),
+        depth_test in any::<bool>(),
+        n in prop_oneof![0_u32..6, Just(u32::MAX)],
+    ) {
+        let lists = layers.build(depth_test, u32::MAX);
+        let mut must = by_pixel(&sort(&lists));
+        must.iter_mut().for_each(|list| list.truncate(n as usize));
+        prop_assert_eq!(by_pixel(&nearest_layers(&lists, n)), must);
     }
 
     /// Nothing is lost or made up: lists and opaque triangles together have all

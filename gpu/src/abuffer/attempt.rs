@@ -162,9 +162,8 @@ impl Run<'_, '_> {
         Ok((self.lists(b)?, image))
     }
 
-    /// Dispatches a stage until no pixel asks for more. Merging a list of n nodes
-    /// takes at most 4 n steps in each of at most log2(n) + 1 passes; what needs
-    /// more follows a list that does not end.
+    /// Dispatches a stage until no pixel asks for more; what needs more than
+    /// [`dispatches`] follows a list that does not end.
     fn until_done(
         &self,
         stage: &'static str,
@@ -173,9 +172,8 @@ impl Run<'_, '_> {
     ) -> Result<Duration, GpuError> {
         let gpu = self.gpu();
         let mut time = Duration::ZERO;
-        let passes = u64::from(longest.max(1).ilog2()) + 1;
         clear(gpu, &b.progress, None)?;
-        for _ in 0..=4 * u64::from(longest) * passes / STEPS {
+        for _ in 0..dispatches(longest) {
             clear(gpu, &b.progress, Some(HEADER))?;
             time += per_pixel(self.rasterizer, "abuffer", stage, self.frame(), &b.named())?;
             if gpu.read::<u32>(&b.progress, 1)?[0] == 0 {
@@ -215,6 +213,14 @@ impl Run<'_, '_> {
     fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
         self.gpu().read(buffer, self.pixels() as usize)
     }
+}
+
+/// The most dispatches that sort and resolve take for lists of at most `longest` nodes:
+/// merging a list of n nodes takes at most 4 n steps in each of at most log2(n) + 1
+/// passes.
+pub(super) fn dispatches(longest: u32) -> u64 {
+    let passes = u64::from(longest.max(1).ilog2()) + 1;
+    4 * u64::from(longest) * passes / STEPS + 1
 }
 
 /// Sets a buffer, or its beginning, to zero.

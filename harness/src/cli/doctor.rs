@@ -8,7 +8,7 @@ use crate::replay::gpu::{Adapter, Adapters};
 use crate::{corpus, embree, mesh, output};
 
 /// What the project found out about drivers the hard way.
-const KNOWN: [(&str, &str); 3] = [
+const KNOWN: [(&str, &str); 4] = [
     (
         "llvmpipe",
         "drops side effects of fragments that a later opaque colour write covers",
@@ -16,6 +16,10 @@ const KNOWN: [(&str, &str); 3] = [
     (
         "llvmpipe",
         "leaves every loop of an invocation after 65,535 iterations in all",
+    ),
+    (
+        "llvmpipe",
+        "answers timestamps around compute passes with moments at which nothing was computed",
     ),
     (
         "-gl",

@@ -11,6 +11,7 @@ use triptych_gpu::raster::Path;
 
 use super::Verdict;
 use super::adapters::{adapters, could_not_run};
+use super::bench::last_bench;
 use super::kernel::{Kernels, all_run, kernels};
 use super::mutants::last_mutants;
 use super::results::Results;
@@ -88,13 +89,23 @@ enum Leg {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum PathName {
+pub(super) enum PathName {
     /// The hardware's rasteriser
     Fragment,
     /// Integer arithmetic in baseline WGSL
     Compute,
     /// The same with 64-bit integers, where an adapter has them
     Native,
+}
+
+impl PathName {
+    pub(super) fn path(self) -> Path {
+        match self {
+            Self::Fragment => Path::Fragment,
+            Self::Compute => Path::Compute,
+            Self::Native => Path::Native,
+        }
+    }
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
@@ -180,6 +191,7 @@ fn publish(
     summary: &Summary,
 ) -> anyhow::Result<PathBuf> {
     let mutants = last_mutants(out, &mut results)?;
+    let bench = last_bench(out, &mut results)?;
     let Results {
         mut reporter,
         scenes,
@@ -190,6 +202,7 @@ fn publish(
         run,
         scenes,
         mutants,
+        bench,
     };
     report::write(&page, &input).with_context(|| format!("cannot write {}", page.display()))?;
     reporter.finish(summary, Some(&page))?;
@@ -278,9 +291,7 @@ impl Args {
             embree: wanted(Leg::Embree),
             paths: match self.path {
                 None => Options::default().paths,
-                Some(PathName::Fragment) => vec![Path::Fragment],
-                Some(PathName::Compute) => vec![Path::Compute],
-                Some(PathName::Native) => vec![Path::Native],
+                Some(path) => vec![path.path()],
             },
             from: self.gpu_from,
             skip: !self.no_skip,

@@ -8,10 +8,11 @@ use crate::row::{Summary, Verdict};
 use crate::text::{count, plural, time};
 
 /// The sections of the page, as the navigation lists them: identifier and name.
-const SECTIONS: [(&str, &str); 5] = [
+const SECTIONS: [(&str, &str); 6] = [
     ("scenes", "Scenes"),
     ("details", "Scene by scene"),
     ("mutants", "Mutants"),
+    ("bench", "Time against error"),
     ("run", "This run"),
     ("glossary", "Glossary"),
 ];

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use triptych_spec::scene::Size;
 
 use crate::again::Again;
+use crate::bench::Bench;
 use crate::digest;
 use crate::json::{Merged, MutantRun};
 use crate::picture::Image;
@@ -22,6 +23,8 @@ pub struct ReportInput {
     pub scenes: Vec<SceneReport>,
     /// Runs of mutants: what the harness finds where something is wrong.
     pub mutants: Vec<MutantRun>,
+    /// The last measurement of time against error.
+    pub bench: Option<Bench>,
 }
 
 /// What was run, where and with what.
@@ -159,6 +162,7 @@ impl ReportInput {
                 .map(scene)
                 .collect(),
             mutants: merged.mutants.clone(),
+            bench: None,
         }
     }
 

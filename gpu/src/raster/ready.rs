@@ -1,0 +1,139 @@
+//! Passes with all that they bind, to be recorded once or many times.
+
+use std::sync::Arc;
+
+use triptych_spec::vertex::{GUARD, guard_origin};
+
+use super::{Path, Rasterizer, Work};
+use crate::error::GpuError;
+use crate::frame::{Frame, WORKGROUP};
+use crate::kernel::{Kernel, Pipeline};
+use crate::timer::Writes;
+
+/// A pass that is ready.
+pub(crate) struct Ready {
+    pub(super) kernel: Arc<Kernel>,
+    group: wgpu::BindGroup,
+    frame: Frame,
+    /// Invocations, if it is a compute pass.
+    invocations: u32,
+}
+
+impl Rasterizer<'_> {
+    /// The passes of stage `stage` of `file` over a band: one for each batch.
+    pub(crate) fn ready(
+        &self,
+        file: &str,
+        stage: &str,
+        frame: Frame,
+        work: &Work,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Vec<Ready>, GpuError> {
+        let kernel = match self.path {
+            Path::Compute | Path::Native => self.kernels.compute(self.gpu, file, stage)?,
+            Path::Fragment => {
+                self.kernels
+                    .fragment(self.gpu, file, &format!("{stage}_fragment"))?
+            }
+        };
+        let pass = |batch: &super::work::Batch| {
+            let frame = Frame {
+                work_first: batch.first,
+                work_count: batch.count,
+                items: batch.items,
+                ..frame
+            };
+            let uniform = self.gpu.uniform("frame", &frame)?;
+            let mut all = vec![
+                ("frame", &uniform),
+                ("corners", &self.corners),
+                ("work", &work.buffer),
+                ("faces", &self.faces),
+            ];
+            all.extend_from_slice(buffers);
+            Ok(Ready {
+                kernel: kernel.clone(),
+                group: kernel.bind(self.gpu, &all),
+                frame,
+                invocations: frame.items,
+            })
+        };
+        work.batches.iter().map(pass).collect()
+    }
+
+    /// A compute pass with one invocation per pixel of a band.
+    pub(crate) fn ready_per_pixel(
+        &self,
+        file: &str,
+        stage: &str,
+        frame: Frame,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Ready, GpuError> {
+        let kernel = self.kernels.compute(self.gpu, file, stage)?;
+        let uniform = self.gpu.uniform("frame", &frame)?;
+        let mut all = vec![("frame", &uniform), ("faces", &self.faces)];
+        all.extend_from_slice(buffers);
+        Ok(Ready {
+            group: kernel.bind(self.gpu, &all),
+            kernel,
+            frame,
+            // A target of 2048 x 2048 pixels is 65,536 workgroups, one more than allowed
+            // in a row; bands of the full size are split before that.
+            invocations: frame.width * frame.rows,
+        })
+    }
+}
+
+impl Ready {
+    /// Records the pass, which notes when it begins and ends if that is asked for.
+    pub(crate) fn record(
+        &self,
+        rasterizer: &Rasterizer<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        writes: Option<Writes<'_>>,
+    ) {
+        match &self.kernel.pipeline {
+            Pipeline::Compute(pipeline) => {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: None,
+                    timestamp_writes: writes.map(Writes::compute),
+                });
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &self.group, &[]);
+                pass.dispatch_workgroups(self.invocations.div_ceil(WORKGROUP), 1, 1);
+            }
+            Pipeline::Render(pipeline) => {
+                let size = rasterizer.size;
+                let mut pass = begin_render(encoder, &rasterizer.target, writes);
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &self.group, &[]);
+                let side = GUARD as f32;
+                let origin = [guard_origin(size.width), guard_origin(size.height)];
+                pass.set_viewport(origin[0] as f32, origin[1] as f32, side, side, 0.0, 1.0);
+                pass.set_scissor_rect(0, self.frame.first_row, size.width, self.frame.rows);
+                pass.draw(0..3 * self.frame.work_count, 0..1);
+            }
+        }
+    }
+}
+
+fn begin_render<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    target: &wgpu::TextureView,
+    writes: Option<Writes<'_>>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: None,
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Discard,
+            },
+        })],
+        timestamp_writes: writes.map(Writes::render),
+        ..Default::default()
+    })
+}

@@ -1,0 +1,188 @@
+//! What a technique must move at least, counted from fragments and layers.
+//!
+//! With `P` pixels, `F` fragments in lists, `C` transparent fragments before the depth
+//! test, `O` opaque fragments on `Q` pixels, `T` transparent and `U` opaque triangles,
+//! `S(n)` layers shown (the sum over pixels of `min(n, layers)`), and `M` the sum over
+//! lists of `length * ceil(log2 length)`; buffers as in `gpu/src/abuffer.wgsl`, each
+//! word counted once for each time that a kernel has to read or write it:
+//!
+//! | part | bytes | atomics |
+//! |---|---|---|
+//! | clear: head, opaque key and triangle | `12 P` | |
+//! | opaque: triangle twice; minimum of keys, key again, minimum of triangles | `88 U + 12 O + 8 Q` | `O + Q` |
+//! | build: triangle with colour, opaque key, head, node and colour | `60 T + 4 C + 40 F` | `2 F` |
+//! | insertion: head, key, triangle, picture; every node; colours shown | `28 P + 16 F + 16 S(n)` | |
+//! | sort: head, progress (cleared, read, written); node read and link written | `104 P + 20 M` | |
+//! | sorted: head, key, triangle, picture; nodes and colours shown | `28 P + 32 S(n)` | |
+//! | resolve: the same with progress and the picture so far | `140 P + 32 S(all)` | |
+//!
+//! What coverage computes is not counted: it is arithmetic. So a frame of small
+//! triangles is far from this bound on purpose. The spec is held to the same bytes.
+
+use triptych_gpu::abuffer::Part;
+use triptych_spec::abuffer::NOTHING;
+use triptych_spec::raster;
+
+use super::Method;
+use crate::replay::spec::SpecRun;
+
+/// What the formulas are made of, on one sub-pixel grid.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    pixels: u64,
+    /// Fragments in lists.
+    pub fragments: u64,
+    considered: u64,
+    opaque_fragments: u64,
+    opaque_pixels: u64,
+    transparent: u64,
+    opaque: u64,
+    /// How many lists there are of each length.
+    lengths: Vec<u64>,
+}
+
+/// Bytes and atomics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Bytes read and written.
+    pub bytes: u64,
+    /// Atomics that read and write.
+    pub atomics: u64,
+}
+
+impl Work {
+    /// This and that.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            bytes: self.bytes + other.bytes,
+            atomics: self.atomics + other.atomics,
+        }
+    }
+}
+
+impl Counts {
+    /// Of a scene, as the spec sees it.
+    pub fn of(run: &SpecRun) -> Self {
+        let opaque = |prim: &u32| run.is_opaque(*prim);
+        let all = raster::count(&run.primitives);
+        let opaque_fragments = run.cover.iter().filter(|f| opaque(&f.prim)).count() as u64;
+        let triangles = run.faces.len() as u64;
+        let opaque_triangles = run.faces.iter().filter(|face| face[3] >= 1.0).count() as u64;
+        let mut lengths = Vec::new();
+        for ends in run.sorted.offsets.windows(2) {
+            let length = (ends[1] - ends[0]) as usize;
+            if lengths.len() <= length {
+                lengths.resize(length + 1, 0);
+            }
+            lengths[length] += 1;
+        }
+        Self {
+            pixels: run.primitives.size.pixels() as u64,
+            fragments: run.sorted.fragments.len() as u64,
+            considered: all - opaque_fragments,
+            opaque_fragments,
+            opaque_pixels: run.opaque.prim.iter().filter(|p| **p != NOTHING).count() as u64,
+            transparent: triangles - opaque_triangles,
+            opaque: opaque_triangles,
+            lengths,
+        }
+    }
+
+    /// Fragments of the longest list.
+    pub fn longest(&self) -> u32 {
+        u32::try_from(self.lengths.len().saturating_sub(1)).unwrap_or(u32::MAX)
+    }
+
+    /// Layers shown, `S(n)`. Nodes behind an opaque surface are not in lists here, as
+    /// the plan leaves them out.
+    fn shown(&self, n: u32) -> u64 {
+        self.sum(|length| length.min(n.into()))
+    }
+
+    /// The sum over lists of something that depends on the length.
+    fn sum(&self, of: impl Fn(u64) -> u64) -> u64 {
+        (0_u64..)
+            .zip(&self.lengths)
+            .map(|(l, lists)| lists * of(l))
+            .sum()
+    }
+
+    /// What a part must do.
+    pub fn work(&self, part: Part) -> Work {
+        let p = self.pixels;
+        let merged = |length: u64| length * u64::from(length.max(1).next_power_of_two().ilog2());
+        let bytes = match part {
+            Part::Clear => 12 * p,
+            Part::Opaque => 88 * self.opaque + 12 * self.opaque_fragments + 8 * self.opaque_pixels,
+            Part::Build => 60 * self.transparent + 4 * self.considered + 40 * self.fragments,
+            Part::Nearest(n) => 28 * p + 16 * self.fragments + 16 * self.shown(n),
+            Part::Sort => 104 * p + 20 * self.sum(merged),
+            Part::NearestSorted(n) => 28 * p + 32 * self.shown(n),
+            Part::Resolve => 140 * p + 32 * self.fragments,
+        };
+        let atomics = match part {
+            Part::Opaque => self.opaque_fragments + self.opaque_pixels,
+            Part::Build => 2 * self.fragments,
+            _ => 0,
+        };
+        Work { bytes, atomics }
+    }
+
+    /// Bytes that a GPU leg holds: triangles with colours; of each pixel head, opaque key
+    /// and triangle, and picture; node and colour of each fragment; sorting keeps its
+    /// progress beside them. Arrays of invocations are not in memory.
+    pub fn memory(&self, method: Method) -> u64 {
+        let progress = match method {
+            Method::Insertion => 0,
+            Method::Sort => 32 * self.pixels,
+        };
+        52 * (self.transparent + self.opaque) + 28 * self.pixels + 32 * self.fragments + progress
+    }
+
+    /// Bytes that the spec holds: triangles as above; of each pixel head, surface, offset
+    /// and a picture of numbers with bounds; node and colour; the fragments in order.
+    pub fn spec_memory(&self, layers: u32) -> u64 {
+        let triangles = 52 * (self.transparent + self.opaque);
+        triangles + 64 * self.pixels + 32 * self.fragments + 16 * self.shown(layers)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two empty pixels, one list of one, and two of five.
+    fn counts() -> Counts {
+        Counts {
+            pixels: 5,
+            fragments: 11,
+            considered: 12,
+            opaque_fragments: 4,
+            opaque_pixels: 3,
+            transparent: 2,
+            opaque: 1,
+            lengths: vec![2, 1, 0, 0, 0, 2],
+        }
+    }
+
+    #[test]
+    fn formulas_are_those_of_the_table() {
+        let counts = counts();
+        let work = |part| counts.work(part);
+        let must = |bytes, atomics| Work { bytes, atomics };
+        assert_eq!(work(Part::Clear), must(60, 0));
+        assert_eq!(work(Part::Opaque), must(88 + 48 + 24, 7));
+        assert_eq!(work(Part::Build), must(120 + 48 + 440, 22));
+        // Shown: 1 + 2 + 2.
+        assert_eq!(work(Part::Nearest(2)), must(140 + 176 + 80, 0));
+        assert_eq!(work(Part::NearestSorted(2)), must(140 + 160, 0));
+        // Five are merged in three passes, one in none.
+        assert_eq!(work(Part::Sort), must(520 + 20 * 2 * 5 * 3, 0));
+        assert_eq!(work(Part::Resolve), must(700 + 352, 0));
+        assert_eq!(counts.longest(), 5);
+        assert_eq!(counts.memory(Method::Insertion), 156 + 140 + 352);
+        assert_eq!(counts.memory(Method::Sort), 156 + 140 + 352 + 160);
+        assert_eq!(counts.spec_memory(9), 156 + 320 + 352 + 176);
+    }
+}

@@ -1,0 +1,85 @@
+//! A run as a page that can be committed beside others.
+
+use super::table::{COLUMNS, ceiling, cells, heading};
+use super::{Bench, WARM_UP};
+use crate::text::clean;
+
+impl Bench {
+    /// The stem of the page and of what lies beside it: family, date and machine.
+    pub fn stem(&self) -> String {
+        let Self { family, date, .. } = self;
+        format!("bench-{family}-{date}-{}", self.machine.slug)
+    }
+}
+
+/// The page, which shows the front of the same stem.
+pub fn page(bench: &Bench) -> String {
+    let Bench { date, machine, .. } = bench;
+    let mut lines = vec![
+        format!("# Time against error: A-buffer, {date}"),
+        String::new(),
+        format!(
+            "- {}, {} cores, {}",
+            text(&machine.cpu),
+            machine.cores,
+            machine.system
+        ),
+        format!("- {}", machine.version),
+    ];
+    for (name, facts) in &machine.adapters {
+        lines.push(format!("- {}: {}", text(name), text(facts)));
+    }
+    lines.extend(
+        bench
+            .ceilings
+            .iter()
+            .map(|c| format!("- ceiling of {}", text(&ceiling(c)))),
+    );
+    lines.extend(bench.remarks.iter().map(|r| format!("- {}", text(r))));
+    lines.push(String::new());
+    lines.extend(how(bench).lines().map(str::to_owned));
+    lines.push(String::new());
+    lines.push(format!(
+        "![Front of time against error]({}.svg)",
+        bench.stem()
+    ));
+    for scene in bench.scenes() {
+        lines.push(String::new());
+        lines.push(format!("## {}", text(&heading(bench, scene))));
+        lines.push(String::new());
+        lines.push(format!("| {} |", COLUMNS.join(" | ")));
+        lines.push(format!("|---|{}", "---:|".repeat(COLUMNS.len() - 1)));
+        let rows = bench.fastest().filter(|row| row.scene == scene);
+        lines.extend(rows.map(|row| format!("| {} |", cells(row).map(|c| text(&c)).join(" | "))));
+    }
+    lines.push(String::new());
+    lines.join("\n")
+}
+
+fn how(bench: &Bench) -> String {
+    format!(
+        "Medians of {} rounds after {WARM_UP} to warm up, with minimum and maximum; every round \
+         runs every leg\nand variant once. Timed is all from snapped triangles to the picture, \
+         coverage included: empty\nthe lists, opaque surfaces, build, order, blend; no transfers, \
+         no compilation. GPU times are timestamps\nof the device. Of each leg and number of \
+         layers the faster method is shown, the CSV has both:\n*insertion* keeps the n nearest in \
+         one walk over the unsorted list, *sort* sorts and stops after n.\n*Of all* is the time \
+         over the same leg's with all layers by sorting, round by round. PSNR is of linear\n\
+         colours with peak 1 against the spec with all layers; *exact* means no difference at \
+         all, and above\n100 dB there is only rounding. *Of bound* is the least time for the \
+         bytes or atomics that the technique\nmust move, at the ceilings above, over the median.",
+        bench.runs
+    )
+}
+
+/// Untrusted text in a cell.
+fn text(untrusted: &str) -> String {
+    let mut text = String::new();
+    for c in clean(untrusted).chars() {
+        if "|\\`*_<>[]#&".contains(c) && !"_#".contains(c) {
+            text.push('\\');
+        }
+        text.push(c);
+    }
+    text
+}

@@ -1,0 +1,98 @@
+//! Rows as tables: on the terminal, and as cells for others.
+
+use super::error::decibels;
+use super::{Bench, Ceilings, Row, Spread};
+use crate::text::{clean, share};
+
+/// The columns, of which the first is a name.
+pub const COLUMNS: [&str; 10] = [
+    "leg",
+    "layers",
+    "method",
+    "time, ms",
+    "of all",
+    "PSNR, dB",
+    "largest",
+    "memory",
+    "fragments/s",
+    "of bound",
+];
+
+/// A row's cells.
+pub fn cells(row: &Row) -> [String; COLUMNS.len()] {
+    let all = if row.all { " (all)" } else { "" };
+    [
+        clean(&row.leg).into_owned(),
+        format!("{}{all}", row.layers),
+        row.method.name().to_owned(),
+        spread(row.time, 1.0, 2),
+        spread(row.ratio, 1.0, 2),
+        decibels(row.psnr),
+        match row.largest {
+            0.0 => "0".to_owned(),
+            largest => format!("{largest:.1e}"),
+        },
+        format!("{:.1} MiB", row.memory as f64 / f64::from(1 << 20)),
+        format!("{:.1} M", row.fragments_per_second * 1e-6),
+        format!("{} {}", share(row.fraction), row.bound),
+    ]
+}
+
+/// `median [min, max]`.
+fn spread(of: Spread, scale: f64, digits: usize) -> String {
+    let [median, min, max] = [of.median, of.min, of.max].map(|v| v * scale);
+    format!("{median:.digits$} [{min:.digits$}, {max:.digits$}]")
+}
+
+/// A ceiling in words.
+pub fn ceiling(ceilings: &Ceilings) -> String {
+    let name = match ceilings.name.as_str() {
+        "spec" => "one core".into(),
+        name => clean(name),
+    };
+    let bytes = spread(ceilings.bytes, 1e-9, 1);
+    match ceilings.atomics {
+        Some(atomics) => {
+            let atomics = spread(atomics, 1e-9, 3);
+            format!("{name}: copies {bytes} GB/s, atomics of lists {atomics} G/s")
+        }
+        None => format!("{name}: copies {bytes} GB/s"),
+    }
+}
+
+/// What there is to say of a scene above its rows.
+pub fn heading(bench: &Bench, scene: &str) -> String {
+    let row = bench.rows.iter().find(|row| row.scene == scene);
+    let facts = row.map(|row| {
+        let [width, height] = row.size;
+        let (fragments, longest) = (crate::text::count(row.fragments), row.longest);
+        format!(": {width} x {height}, {fragments} fragments in lists of up to {longest}")
+    });
+    format!("{}{}", clean(scene), facts.unwrap_or_default())
+}
+
+/// Lines for a terminal: the ceilings, and of each scene the faster method of each leg
+/// and number of layers.
+pub fn lines(bench: &Bench) -> Vec<String> {
+    let mut lines: Vec<String> = bench.ceilings.iter().map(ceiling).collect();
+    for scene in bench.scenes() {
+        lines.push(String::new());
+        lines.push(heading(bench, scene));
+        let rows = bench.fastest().filter(|row| row.scene == scene);
+        let mut table = vec![COLUMNS.map(str::to_owned)];
+        table.extend(rows.map(cells));
+        let width = |column: usize| {
+            let cells = table.iter().map(|cells| cells[column].chars().count());
+            cells.max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
+        for cells in &table {
+            let mut line = format!("  {:<1$}", cells[0], widths[0]);
+            for (cell, width) in cells.iter().zip(&widths).skip(1) {
+                line.push_str(&format!("  {cell:>width$}"));
+            }
+            lines.push(line);
+        }
+    }
+    lines
+}

@@ -1,0 +1,181 @@
+//! `triptych bench`: what it writes, and what it refuses. No time is judged.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+use triptych_harness::bench::csv::COLUMNS;
+
+use super::{Place, SCENE, repository};
+
+/// The scene with layers in an order that hides the nearest ones, twelve of them.
+fn deep() -> String {
+    let deep = SCENE
+        .replace("layers = 2", "layers = 12")
+        .replace("spacing = 1", "spacing = 0.25");
+    let deep = deep.replace("fragments = 32", "fragments = 192");
+    deep.replace("layers_max = 2", "layers_max = 12")
+}
+
+/// A file of results as rows of named values.
+fn rows(text: &str) -> Vec<BTreeMap<&'static str, &str>> {
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some(COLUMNS.join(",").as_str()), "the header");
+    let mut rows = Vec::new();
+    for line in lines {
+        assert_eq!(line.split(',').count(), COLUMNS.len(), "{line}");
+        rows.push(COLUMNS.into_iter().zip(line.split(',')).collect());
+    }
+    rows
+}
+
+#[test]
+fn results_are_written_and_sound() {
+    let place = Place::new("bench-results");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let command = [
+        "bench",
+        "abuffer",
+        "deep",
+        "--runs",
+        "2",
+        "--svg",
+        "own/f.svg",
+    ];
+    let stderr = place.run(&command).expect(0).stderr;
+    let plain = stderr.contains("abuffer/deep: measuring\n");
+    assert!(plain, "plain lines: {stderr}");
+    let out = place.root.join("reports/out/bench");
+    let read = |file: PathBuf| {
+        fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
+    };
+    let csv = read(out.join("abuffer.csv"));
+    let rows = rows(&csv);
+    rows.iter().for_each(is_sound);
+    let all = ["1", "2", "4", "8", "12"];
+    let layers = |leg: &str, method: &str| -> Vec<&str> {
+        let own = rows
+            .iter()
+            .filter(|r| r["leg"].contains(leg) && r["method"] == method);
+        own.map(|r| r["layers"]).collect()
+    };
+    assert_eq!(layers("spec", "insertion"), all);
+    assert_eq!(layers("llvmpipe/compute", "insertion"), all);
+    assert_eq!(layers("llvmpipe/compute", "sort"), all);
+    let own = read(place.root.join("own/f.svg"));
+    assert_eq!(read(out.join("abuffer.svg")), own, "the same front");
+    let files = fs::read_dir(&out).expect("a folder");
+    let files = files.map(|f| f.expect("a file").path());
+    let pages: Vec<_> = files
+        .filter(|p| p.extension().is_some_and(|e| e == "md"))
+        .collect();
+    let [page] = &pages[..] else {
+        panic!("one page: {pages:?}");
+    };
+    assert!(page.with_extension("svg").is_file(), "beside its front");
+    assert!(read(page.clone()).contains("| 12 (all) |"), "a table");
+    // The report of a replay shows it.
+    place.run(&["replay", "--leg", "gpu", "deep"]).expect(0);
+    let report = read(place.root.join("reports/out/index.html"));
+    assert!(report.contains("class=\"front\""), "the front is shown");
+}
+
+/// Figures are finite and positive, and only all layers are right.
+fn is_sound(row: &BTreeMap<&'static str, &str>) {
+    for name in [
+        "time_ms",
+        "time_ms_min",
+        "time_ms_max",
+        "ratio",
+        "memory_bytes",
+        "fragments_per_second",
+        "bound_ms",
+        "fraction_of_bound",
+    ] {
+        let value: f64 = row[name].parse().unwrap_or(f64::NAN);
+        assert!(value.is_finite() && value > 0.0, "{name}: {row:?}");
+    }
+    let exact = row["leg"] == "spec" && row["all"] == "true";
+    assert_eq!(row["psnr_db"] == "exact", exact, "{row:?}");
+    let psnr = row["psnr_db"].parse().unwrap_or(f64::INFINITY);
+    assert_eq!(psnr > 100.0, row["all"] == "true", "{row:?}");
+}
+
+#[test]
+fn a_wrong_kernel_is_named_and_not_timed() {
+    let place = Place::new("bench-wrong");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let example = repository().join("harness/examples/first-k/build.wgsl");
+    let kernel = format!("build={}", example.display());
+    let command = [
+        "bench", "abuffer", "deep", "--runs", "1", "--kernel", &kernel,
+    ];
+    let ran = place.run(&command).expect(1);
+    let wrong = "triptych: abuffer/deep: gpu@llvmpipe/compute";
+    assert!(ran.stderr.contains(wrong), "{}", ran.stderr);
+    assert!(
+        !ran.stdout.contains("gpu@llvmpipe/compute"),
+        "{}",
+        ran.stdout
+    );
+    // A kernel that has all fragments, each behind where it is.
+    let text = "//#import abuffer\n";
+    place.write("mine.wgsl", text);
+    let kernel = "build=mine.wgsl";
+    let command = [
+        "bench", "abuffer", "deep", "--runs", "1", "--kernel", kernel,
+    ];
+    place.run(&command).expect(0);
+    let dark = fs::read_to_string(repository().join("gpu/src/abuffer.wgsl")).expect("ours");
+    let dark = dark.replace("colours[address] = faces", "colours[address] = 0.5 * faces");
+    place.write("mine.wgsl", &dark);
+    let ran = place.run(&command).expect(1);
+    let first = ran.stderr.lines().find(|l| l.contains("llvmpipe/compute"));
+    let first = first.unwrap_or_else(|| panic!("{}", ran.stderr));
+    for part in [
+        "abuffer/deep",
+        "layers by insertion",
+        "channels differ",
+        "pixel (",
+    ] {
+        assert!(first.contains(part), "{part} in {first}");
+    }
+}
+
+#[test]
+fn mistakes_are_one_line() {
+    let place = Place::new("bench-mistakes");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let nosuch = place
+        .run(&["bench", "abuffer", "deep", "--adapter", "nosuch"])
+        .expect(2);
+    let words = "triptych: no adapter is called nosuch; see `triptych doctor`\n";
+    assert_eq!(nosuch.stderr, words);
+    for wrong in [
+        &["bench", "abuffer", "deep", "--runs", "0"][..],
+        &["bench", "abuffer", "deep", "--layers", "1,0"],
+        &["bench", "nosuch"],
+        &["bench", "abuffer", "nosuch"],
+    ] {
+        let ran = place.run(wrong).expect(2);
+        assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
+        assert_eq!(ran.stdout, "", "{wrong:?}");
+    }
+}
+
+#[test]
+fn nothing_measured_is_no_success() {
+    let place = Place::new("bench-nothing");
+    let opaque = deep().replace("opacity = 0.5", "opacity = 1");
+    place.write("corpus/abuffer/opaque/scene.toml", &opaque);
+    let ran = place
+        .run(&["bench", "abuffer", "opaque", "--runs", "1"])
+        .expect(2);
+    assert!(
+        ran.stderr.contains("nothing was measured"),
+        "{}",
+        ran.stderr
+    );
+    let why = "not measured: abuffer/opaque: nothing transparent is seen";
+    assert!(ran.stdout.contains(why), "{}", ran.stdout);
+}
