@@ -5,6 +5,7 @@ pub mod embree;
 pub mod fragments;
 pub mod image;
 pub mod lists;
+pub mod moved;
 pub mod opaque;
 pub mod order;
 pub mod passes;

@@ -85,6 +85,10 @@ pub const ROWS: &[(&str, &str)] = &[
     ("expect", "the spec with a scene's closed-form answers"),
     ("overflow", "attempts that ran out of nodes"),
     ("end to end", "all stages from the GPU's own vertices"),
+    (
+        "vertex",
+        "lists from the GPU's own vertices with the spec's own (--vertex gpu)",
+    ),
     ("plan", "a leg with and without skipping"),
     ("leg", "a leg that could not run"),
     ("all", "a scene that could not be replayed"),

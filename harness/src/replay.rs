@@ -8,6 +8,7 @@ pub mod end_to_end;
 pub mod facts;
 pub mod gpu;
 mod legs;
+mod own_vertices;
 pub mod pictures;
 pub mod rows;
 mod run;
@@ -28,7 +29,7 @@ use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{LoadError, load_entry};
 use facts::Facts;
-use gpu::{Adapter, Broken, From};
+use gpu::{Adapter, Broken, From, Vertices};
 use rows::Rows;
 use run::{Run, Stop};
 
@@ -45,6 +46,8 @@ pub struct Options {
     pub paths: Vec<Path>,
     /// From which stage on GPU legs use their own results.
     pub from: From,
+    /// Whose vertices GPU legs start from; goes with `from` ([`Vertices::from`]).
+    pub vertex: Vertices,
     /// Leave out what a scene does not need.
     pub skip: bool,
     /// In place of the scenes' own seeds.
@@ -65,6 +68,7 @@ impl Default for Options {
             embree: true,
             paths: Path::ALL.to_vec(),
             from: From::default(),
+            vertex: Vertices::default(),
             skip: true,
             seed: None,
             dump: None,

@@ -5,11 +5,11 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
 
-use super::gpu::{Adapter, Broken, From, GpuLeg};
+use super::gpu::{Adapter, Broken, From, GpuLeg, Vertices};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
-use super::{Options, end_to_end, pictures, skips};
+use super::{Options, end_to_end, own_vertices, pictures, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -159,6 +159,9 @@ impl Run<'_> {
             };
             end_to_end::run(&leg, spec, &mut self.rows)?;
         }
+        if self.options.vertex == Vertices::Gpu {
+            own_vertices::run(&leg, spec, &seen, &mut self.rows);
+        }
         if self.tests_skipping(adapter, path) {
             let saved = skips::run(&leg, &seen, &mut self.rows)?;
             self.saved.extend(saved.map(|ms| (leg.label(), ms)));
@@ -212,8 +215,9 @@ impl Run<'_> {
     }
 
     /// The GPU's own vertex stages, compared with the spec's. They are the same for all
-    /// paths, so they are judged on the compute path, which takes the finest grid; the
-    /// triangles are given back where they are wanted and differ.
+    /// paths, so they are judged on the compute path, which takes the finest grid; on
+    /// each if its lists are to follow from them. The triangles are given back where they
+    /// are wanted and differ.
     fn vertices(
         &mut self,
         spec: &Observed<Spec, SpecRun>,
@@ -221,7 +225,8 @@ impl Run<'_> {
         path: Path,
     ) -> Result<Option<triptych_spec::vertex::Primitives>, GpuError> {
         let only_path = self.options.paths.len() == 1;
-        let judged = path == Path::Compute || only_path;
+        let followed = self.options.vertex == Vertices::Gpu;
+        let judged = path == Path::Compute || only_path || followed;
         let from = self.options.from;
         if !judged && from >= From::Cover {
             return Ok(None);

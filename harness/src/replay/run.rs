@@ -111,12 +111,13 @@ impl<'a> Run<'a> {
         };
         let Options {
             from,
+            vertex,
             skip,
             paths,
             pictures,
             ..
         } = self.options;
-        let options = format!("{from:?} {skip} {paths:?} {pictures}");
+        let options = format!("{from:?} {vertex:?} {skip} {paths:?} {pictures}");
         let mut all = vec![
             self.loaded.name.as_str(),
             &self.loaded.stats.sha256,
