@@ -9,6 +9,7 @@ pub mod moved;
 pub mod opaque;
 pub mod order;
 pub mod passes;
+pub mod region;
 pub mod vertex;
 
 use std::collections::BTreeMap;

@@ -89,6 +89,7 @@ pub const ROWS: &[(&str, &str)] = &[
         "vertex",
         "lists from the GPU's own vertices with the spec's own (--vertex gpu)",
     ),
+    ("world", "coverage with Embree's in world space"),
     ("plan", "a leg with and without skipping"),
     ("leg", "a leg that could not run"),
     ("all", "a scene that could not be replayed"),

@@ -42,6 +42,8 @@ pub struct Options {
     pub broken: Vec<Broken>,
     /// Replay through Embree.
     pub embree: bool,
+    /// Replay through Embree in world space.
+    pub world: bool,
     /// Raster paths.
     pub paths: Vec<Path>,
     /// From which stage on GPU legs use their own results.
@@ -66,6 +68,7 @@ impl Default for Options {
             gpu: true,
             broken: Vec::new(),
             embree: true,
+            world: true,
             paths: Path::ALL.to_vec(),
             from: From::default(),
             vertex: Vertices::default(),

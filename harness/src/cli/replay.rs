@@ -86,6 +86,7 @@ enum Leg {
     Spec,
     Gpu,
     Embree,
+    EmbreeWorld,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -118,7 +119,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     found.broken.iter().for_each(complain);
     let adapters = found.open;
     options.broken = found.broken;
-    let library = if options.embree {
+    let library = if options.embree || options.world {
         Some(embree::library()?)
     } else {
         None
@@ -265,6 +266,7 @@ impl Args {
             gpu: wanted(Leg::Gpu),
             broken: Vec::new(),
             embree: wanted(Leg::Embree),
+            world: wanted(Leg::EmbreeWorld),
             paths: match self.path {
                 None => Options::default().paths,
                 Some(PathName::Fragment) => vec![Path::Fragment],

@@ -7,9 +7,13 @@ use triptych_spec::scene::Scene;
 use super::rows::Rows;
 use super::spec::SpecRun;
 use crate::compare::{self, Judgement, compare};
+use crate::embree::world::{World, WorldScene};
 use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits};
 use crate::observe::{Embree, Observed, Spec};
 use crate::row::Class;
+
+/// The row of Embree's vote in world space.
+pub const WORLD: &str = "world";
 
 /// Asks Embree for its vote and adds the row; gives the scene for a picture.
 pub fn run(
@@ -76,6 +80,53 @@ fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgem
         judgement.skipped = Some(reason);
     }
     judgement
+}
+
+/// Asks Embree in world space and adds row `world`; hands it the triangles of
+/// `given`, which is the scene's own world but in tests.
+pub fn run_world(
+    scene: &Scene,
+    world: &World,
+    given: &World,
+    spec: &Observed<Spec, SpecRun>,
+    rows: &mut Rows,
+) {
+    if scene.triangles.is_empty() {
+        let reason = "plan: no triangles".to_owned();
+        rows.skip(WORLD, &spec.label, "embree", Class::Vote, reason);
+        return;
+    }
+    let start = Instant::now();
+    let failed = |rows: &mut Rows, error: &EmbreeError| {
+        rows.fail(WORLD, &spec.label, "embree", None, error.to_string());
+    };
+    let seen = match WorldScene::new(scene, given) {
+        Ok(seen) => Observed::<Embree, _>::new("embree", seen),
+        Err(error) => return failed(rows, &error),
+    };
+    let mut vote = Ok(());
+    let judgement = compare(spec, &seen, |spec, seen| {
+        let voted = compare::embree::compare_world(scene, world, &spec.primitives, seen);
+        match voted {
+            Ok((vote, share)) => {
+                let mut judgement = judge(&vote, None);
+                let share = 100.0 * share;
+                let note = &judgement.note;
+                judgement.note =
+                    format!("{note}; the band of class edge is {share:.3} % of the area");
+                judgement
+            }
+            Err(error) => {
+                vote = Err(error);
+                Judgement::new(Class::Vote, "pairs")
+            }
+        }
+    });
+    if let Err(error) = vote {
+        return failed(rows, &error);
+    }
+    let spec = spec.map(|_| ()).taking(spec.value.times.cover);
+    rows.add(WORLD, &spec, &seen.taking(start.elapsed()), judgement);
 }
 
 /// What Embree saw: its hits in order of distance, blended like a list.

@@ -11,6 +11,8 @@ use super::spec::{SpecRun, Times, timed};
 use super::{Options, Outcome, embree, pictures};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
+use crate::embree::view::View;
+use crate::embree::world::World;
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
 use crate::report::Picture;
@@ -66,6 +68,9 @@ impl<'a> Run<'a> {
         self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
         if self.options.embree {
             self.unit(Uses::Embree, &["embree"], Self::embree)?;
+        }
+        if self.options.world {
+            self.unit(Uses::Embree, &["embree world"], Self::world)?;
         }
         if self.options.gpu {
             self.gpu()?;
@@ -220,6 +225,18 @@ impl<'a> Run<'a> {
             self.pictures
                 .push(pictures::leg("embree", self.loaded.scene.size, &pixels));
         }
+        Ok(())
+    }
+}
+
+impl Run<'_> {
+    /// Embree in world space.
+    fn world(&mut self) -> Result<(), Stop> {
+        let spec = self.spec(SUBPIXEL_BITS)?;
+        let Loaded { scene, world, .. } = self.loaded;
+        let view = View::new(world.camera, scene.size);
+        let world = World::new(&world.points(scene), view);
+        embree::run_world(scene, &world, &world, &spec, &mut self.rows);
         Ok(())
     }
 }
