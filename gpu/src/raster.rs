@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use triptych_spec::scene::Size;
-use triptych_spec::vertex::{GUARD, Primitives, guard_origin};
+use triptych_spec::vertex::{GUARD, Position, Primitives, SUBPIXEL_BITS, guard_origin};
 
 use crate::context::Gpu;
 use crate::error::GpuError;
@@ -57,6 +57,8 @@ pub struct Rasterizer<'g> {
     pub size: Size,
     bits: u32,
     corners: wgpu::Buffer,
+    /// Clip space, where the driver is to divide, clip and snap.
+    handed: Option<wgpu::Buffer>,
     /// Colour of each triangle.
     pub faces: wgpu::Buffer,
     /// First and last row with a sample, of each triangle that has any.
@@ -92,9 +94,39 @@ impl<'g> Rasterizer<'g> {
             bits,
             rows: corners.iter().map(|c| sampled_rows(c, bits)).collect(),
             corners: gpu.upload("corners", &corners)?,
+            handed: None,
             faces: gpu.upload("faces", faces)?,
             target: target(gpu, primitives.size)?,
             passes: RefCell::default(),
+        })
+    }
+
+    /// Hands the driver triangles in the clip space of the guard rectangle: it divides,
+    /// clips and snaps itself. Only coverage means anything then; keys are 0. The path is
+    /// [`Path::Fragment`].
+    ///
+    /// # Errors
+    /// More triangles than the adapter can bind, or has memory for.
+    pub fn handed(
+        gpu: &'g Gpu,
+        kernels: &'g Kernels,
+        size: Size,
+        triangles: &[[Position<f32>; 3]],
+    ) -> Result<Self, GpuError> {
+        let nothing = Primitives {
+            size,
+            bits: SUBPIXEL_BITS,
+            snapped: vec![[0; 3]],
+            prims: vec![[0; 3]; triangles.len()],
+            source: Vec::new(),
+        };
+        let faces = vec![[0.0; 4]; triangles.len()];
+        let all = Self::new(gpu, kernels, Path::Fragment, &nothing, &faces)?;
+        Ok(Self {
+            // Only the driver knows where they lie.
+            rows: vec![Some([0, i64::from(size.height) - 1]); triangles.len()],
+            handed: Some(gpu.upload("handed", triangles)?),
+            ..all
         })
     }
 
@@ -113,8 +145,12 @@ impl<'g> Rasterizer<'g> {
         let kernel = match self.path {
             Path::Compute | Path::Native => self.kernels.compute(self.gpu, file, stage)?,
             Path::Fragment => {
-                self.kernels
-                    .fragment(self.gpu, file, &format!("{stage}_fragment"))?
+                let place = match self.handed {
+                    None => "place",
+                    Some(_) => "place_handed",
+                };
+                let entry = format!("{stage}_fragment");
+                self.kernels.fragment(self.gpu, file, place, &entry)?
             }
         };
         let mut encoder = self.gpu.encoder();
@@ -132,6 +168,7 @@ impl<'g> Rasterizer<'g> {
                 ("work", &work.buffer),
                 ("faces", &self.faces),
             ];
+            all.extend(self.handed.as_ref().map(|handed| ("handed", handed)));
             all.extend_from_slice(buffers);
             let group = kernel.bind(self.gpu, &all);
             self.record(&mut encoder, &kernel, &group, &frame);

@@ -3,6 +3,7 @@
 
 pub mod embree;
 pub mod fragments;
+pub mod handed;
 pub mod image;
 pub mod lists;
 pub mod moved;

@@ -37,8 +37,12 @@ pub enum Twin {
     None(&'static str),
 }
 
-/// The vertex entry point of every pipeline on the fragment path, in `place.wgsl`.
+/// The file of the vertex entry points of every pipeline on the fragment path, and the
+/// entry point for the snapped triangles.
 pub const PLACE: &str = "place";
+
+/// The other: the driver divides, clips and snaps (`--vertex hardware`).
+pub const PLACE_HANDED: &str = "place_handed";
 
 /// All families, in the order in which they run.
 pub const FAMILIES: &[Family] = &[

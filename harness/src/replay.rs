@@ -7,6 +7,7 @@ pub mod embree;
 pub mod end_to_end;
 pub mod facts;
 pub mod gpu;
+mod hardware;
 mod legs;
 mod own_vertices;
 pub mod pictures;

@@ -112,6 +112,10 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
     let mut options = args.options()?;
     all_run(&foreign, &options)?;
+    anyhow::ensure!(
+        foreign.is_empty() || options.vertex != Vertices::Hardware,
+        "--kernel has no part in --vertex hardware; leave one of them out"
+    );
     let found = args.adapters(&options, &foreign)?;
     if found.open.is_empty() && !found.broken.is_empty() {
         return could_not_run(found.broken);

@@ -9,7 +9,7 @@ use super::gpu::{Adapter, Broken, From, GpuLeg, Vertices};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
-use super::{Options, end_to_end, own_vertices, pictures, skips};
+use super::{Options, end_to_end, hardware, own_vertices, pictures, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -97,6 +97,13 @@ impl Run<'_> {
         }
         let spec = self.spec(adapter.bits(path))?;
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        if self.options.vertex == Vertices::Hardware {
+            let (scene, budget) = (&self.loaded.scene, self.vertex_budget());
+            if let Err(error) = hardware::run(adapter, path, scene, budget, &mut self.rows) {
+                self.refused("cover", &label, &spec.value, &error);
+            }
+            return Ok(());
+        }
         match self.leg_or_error(&spec, adapter, path) {
             Ok(dumped) => dumped.map_err(Stop::Dump),
             Err(error) => {
@@ -237,10 +244,14 @@ impl Run<'_> {
             scene: &self.loaded.scene,
             spec,
             from,
-            // A bare mesh states no budgets.
-            budget: (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
+            budget: self.vertex_budget(),
         };
         leg.run(judged.then_some(&mut self.rows))
+    }
+
+    /// A bare mesh states no budgets.
+    fn vertex_budget(&self) -> Option<f64> {
+        (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0)
     }
 
     /// From a later stage on than coverage, the spec's lists are given: nothing is skipped.
