@@ -34,6 +34,16 @@ use gpu::{Adapter, Broken, From, Vertices};
 use rows::Rows;
 use run::{Run, Stop};
 
+/// Of which scenes Embree is asked in world space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Extent {
+    /// Those of at most [`embree::WORLD_MAX`] items, so that it costs a default run little
+    #[default]
+    Small,
+    /// All of them
+    All,
+}
+
 /// What to replay, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -43,8 +53,8 @@ pub struct Options {
     pub broken: Vec<Broken>,
     /// Replay through Embree.
     pub embree: bool,
-    /// Replay through Embree in world space.
-    pub world: bool,
+    /// Of which scenes Embree is asked in world space as well.
+    pub world: Extent,
     /// Raster paths.
     pub paths: Vec<Path>,
     /// From which stage on GPU legs use their own results.
@@ -69,7 +79,7 @@ impl Default for Options {
             gpu: true,
             broken: Vec::new(),
             embree: true,
-            world: true,
+            world: Extent::default(),
             paths: Path::ALL.to_vec(),
             from: From::default(),
             vertex: Vertices::default(),

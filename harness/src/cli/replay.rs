@@ -20,7 +20,7 @@ use crate::cache::Cache;
 use crate::dump::Dump;
 use crate::output::{complain, stdout};
 use crate::replay::gpu::{Adapter, Adapters, From, Vertices};
-use crate::replay::{Options, replay};
+use crate::replay::{Extent, Options, replay};
 use crate::report::{self, ReportInput, RunInfo};
 use crate::row::Summary;
 use crate::{corpus, embree};
@@ -85,8 +85,8 @@ pub struct Args {
 enum Leg {
     Spec,
     Gpu,
+    /// In screen space, and in world space of every scene, however large
     Embree,
-    EmbreeWorld,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -123,7 +123,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     found.broken.iter().for_each(complain);
     let adapters = found.open;
     options.broken = found.broken;
-    let library = if options.embree || options.world {
+    let library = if options.embree {
         Some(embree::library()?)
     } else {
         None
@@ -270,7 +270,10 @@ impl Args {
             gpu: wanted(Leg::Gpu),
             broken: Vec::new(),
             embree: wanted(Leg::Embree),
-            world: wanted(Leg::EmbreeWorld),
+            world: match self.leg.contains(&Leg::Embree) {
+                true => Extent::All,
+                false => Extent::Small,
+            },
             paths: match self.path {
                 None => Options::default().paths,
                 Some(PathName::Fragment) => vec![Path::Fragment],

@@ -11,8 +11,6 @@ use super::spec::{SpecRun, Times, timed};
 use super::{Options, Outcome, embree, pictures};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
-use crate::embree::view::View;
-use crate::embree::world::World;
 use crate::observe::{Analytic, Observed, Spec};
 use crate::plan::Plan;
 use crate::report::Picture;
@@ -68,9 +66,7 @@ impl<'a> Run<'a> {
         self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
         if self.options.embree {
             self.unit(Uses::Embree, &["embree"], Self::embree)?;
-        }
-        if self.options.world {
-            self.unit(Uses::Embree, &["embree world"], Self::world)?;
+            self.unit(Uses::Embree, &["embree", embree::WORLD], Self::world)?;
         }
         if self.options.gpu {
             self.gpu()?;
@@ -117,12 +113,13 @@ impl<'a> Run<'a> {
         let Options {
             from,
             vertex,
+            world,
             skip,
             paths,
             pictures,
             ..
         } = self.options;
-        let options = format!("{from:?} {vertex:?} {skip} {paths:?} {pictures}");
+        let options = format!("{from:?} {vertex:?} {world:?} {skip} {paths:?} {pictures}");
         let mut all = vec![
             self.loaded.name.as_str(),
             &self.loaded.stats.sha256,
@@ -227,16 +224,10 @@ impl<'a> Run<'a> {
         }
         Ok(())
     }
-}
 
-impl Run<'_> {
-    /// Embree in world space.
     fn world(&mut self) -> Result<(), Stop> {
         let spec = self.spec(SUBPIXEL_BITS)?;
-        let Loaded { scene, world, .. } = self.loaded;
-        let view = View::new(world.camera, scene.size);
-        let world = World::new(&world.points(scene), view);
-        embree::run_world(scene, &world, &world, &spec, &mut self.rows);
+        embree::run_world(self.loaded, self.options.world, &spec, &mut self.rows);
         Ok(())
     }
 }

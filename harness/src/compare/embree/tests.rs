@@ -1,6 +1,7 @@
 //! The comparer on scenes whose answer is known.
 
 mod planted;
+mod world;
 
 use triptych_spec::raster::{Setup, cover, sample};
 use triptych_spec::scene::Size;
