@@ -269,7 +269,10 @@ fn vertices_are_placed_without_inexact_operations() {
             seen += 1;
         }
     }
-    assert_eq!(seen, 8, "two functions in two programs of two forms each");
+    assert_eq!(
+        seen, 12,
+        "three functions in two programs of two forms each"
+    );
 }
 
 #[test]

@@ -12,7 +12,7 @@ use triptych_harness::cause::Cause;
 use triptych_harness::corpus::{self, Entry};
 use triptych_harness::replay::gpu::{Adapter, From, Vertices};
 use triptych_harness::replay::{Options, replay};
-use triptych_harness::row::{Row, Verdict};
+use triptych_harness::row::{Class, Row, Verdict};
 
 static DEVICES: LazyLock<Devices> = LazyLock::new(Devices::default);
 
@@ -106,6 +106,71 @@ fn a_defect_of_the_vertex_stages_has_cause_vertex_on_every_path() {
             let changed = row(&rows, &leg, "vertex");
             assert_eq!(changed.differ, 0, "{changed:#?}");
             assert!(!changed.note.contains(" 0 come or go"), "{changed:#?}");
+        }
+    }
+}
+
+/// Every leg on the fragment path, and no other, has coverage by clip space.
+#[test]
+fn what_the_driver_makes_of_clip_space_is_inside_the_band() {
+    let adapters = DEVICES.take().expect("adapters");
+    for scene in [
+        "raster/near-plane",
+        "raster/odd-size",
+        "raster/guard",
+        "raster/through-camera",
+        "abuffer/mixed",
+    ] {
+        let rows = rows(scene, &adapters, Vertices::Hardware);
+        for leg in legs(&adapters) {
+            let cover = row(&rows, &leg, "cover");
+            if !leg.ends_with("/fragment") {
+                assert!(cover.skipped.is_some(), "{scene}: {cover:#?}");
+                continue;
+            }
+            assert_eq!(cover.verdict(), Verdict::Agree, "{scene}: {cover:#?}");
+            assert_eq!(cover.class, Class::Band, "{scene}: {cover:#?}");
+            assert!(cover.note.contains("MAY: "), "{scene}: {cover:#?}");
+            assert!(cover.admitted_share() < 0.5, "{scene}: {cover:#?}");
+            let judged = row(&rows, &leg, "vertex");
+            assert_eq!(judged.verdict(), Verdict::Agree, "{scene}: {judged:#?}");
+            assert_eq!(judged.admitted, 0, "{scene}: {judged:#?}");
+        }
+    }
+}
+
+/// Defects of what is handed to the driver, each on a scene that shows it on any grid.
+#[test]
+fn defects_of_clip_space_are_outside_the_band() {
+    let find = "return Placed(handed[3u * prim + index % 3u], prim);";
+    let placed = |position: &str| {
+        format!("let at = handed[3u * prim + index % 3u]; return Placed({position}, prim);")
+    };
+    let defects = [
+        // Two sub-pixels of the coarser grid.
+        ("raster/odd-size", "vec4(at.x + at.w / 16384.0, at.yzw)"),
+        ("raster/near-plane", "vec4(at.xyz, at.w * 1.01)"),
+        // Quads in the near and in the far plane are clipped.
+        (
+            "raster/depth-range",
+            "vec4(at.xy, at.z - 0.001 * at.w, at.w)",
+        ),
+        (
+            "raster/depth-range",
+            "vec4(at.xy, at.z + 0.001 * at.w, at.w)",
+        ),
+    ];
+    for (scene, position) in defects {
+        let mut adapters = DEVICES.take().expect("adapters");
+        adapters.spoil();
+        patch(&mut adapters, "place", find, &placed(position));
+        let rows = rows(scene, &adapters, Vertices::Hardware);
+        for adapter in adapters.iter() {
+            let leg = format!("gpu@{}/fragment", adapter.gpu.name);
+            let cover = row(&rows, &leg, "cover");
+            let causes: Vec<_> = cover.causes.keys().copied().collect();
+            assert_eq!(causes, [Cause::Coverage], "{scene} {position}: {cover:#?}");
+            assert_eq!(cover.unexplained, 0, "{scene} {position}: {cover:#?}");
         }
     }
 }

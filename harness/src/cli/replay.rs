@@ -31,6 +31,7 @@ use crate::{corpus, embree};
     triptych replay --adapter llvmpipe --path compute --json out.json\n  \
     triptych replay my.obj --dump dump --no-cache\n  \
     triptych replay --vertex gpu raster/near-plane\n  \
+    triptych replay --vertex hardware --path fragment raster/\n  \
     triptych replay --kernel build=mine.wgsl abuffer/\n\n\
     A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
     JSON lines and exit code are those of the whole run.")]
