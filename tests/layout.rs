@@ -272,7 +272,7 @@ fn vertices_are_placed_without_inexact_operations() {
     }
     assert_eq!(
         seen, 12,
-        "two functions in three programs of two forms each"
+        "three functions in three programs of two forms each"
     );
 }
 

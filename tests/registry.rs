@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use naga::ShaderStage;
 use triptych_gpu::wgsl::Sources;
 use triptych_harness::plan::Plan;
-use triptych_harness::registry::{FAMILIES, Family, MEASURED, PLACE, stages};
+use triptych_harness::registry::{FAMILIES, Family, MEASURED, PLACE, PLACE_HANDED, stages};
 use triptych_spec::scene::{Scene, Size};
 
 fn root() -> PathBuf {
@@ -90,7 +90,7 @@ fn entry_points_are_those_of_the_wgsl() {
             all.collect::<BTreeSet<&str>>()
         };
         let fragment = of(|s| s.fragment.entries());
-        let place = (!fragment.is_empty()).then_some(PLACE);
+        let place = (!fragment.is_empty()).then_some([PLACE, PLACE_HANDED]);
         let name = family.name;
         assert_eq!(
             entries(ShaderStage::Compute),
@@ -100,7 +100,7 @@ fn entry_points_are_those_of_the_wgsl() {
         assert_eq!(entries(ShaderStage::Fragment), fragment, "{name}, fragment");
         assert_eq!(
             entries(ShaderStage::Vertex),
-            place.into_iter().collect(),
+            place.into_iter().flatten().collect(),
             "{name}, vertex"
         );
         let stages = [

@@ -24,7 +24,7 @@ use triptych_harness::corpus::{self, Entry};
 use triptych_harness::json;
 use triptych_harness::registry::stages;
 use triptych_harness::replay::gpu::Adapter;
-use triptych_harness::replay::{Options, Outcome, replay};
+use triptych_harness::replay::{Extent, Options, Outcome, replay};
 use triptych_harness::row::{Row, Verdict};
 use triptych_harness::scene::file::SceneFile;
 use triptych_harness::snapshot;
@@ -81,7 +81,11 @@ fn missing_mesh(entry: &Entry) -> Option<String> {
 fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
     let mut adapters = devices.take()?;
     let start = Instant::now();
-    let outcome = replay(entry, &adapters, &Options::default())?;
+    let options = Options {
+        world: Extent::All,
+        ..Options::default()
+    };
+    let outcome = replay(entry, &adapters, &options)?;
     leave_rows(entry, &outcome, start.elapsed().as_secs_f64())?;
     let mut wrong = judge(&outcome, &adapters);
     if !wrong.is_empty() {
@@ -153,6 +157,10 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
         if rows.is_empty() || (!compared && rows.iter().any(|r| r.skipped.is_none())) {
             wrong.push(format!("nothing was compared with {leg}, for no reason"));
         }
+    }
+    // Embree is asked twice.
+    if outcome.rows.iter().all(|r| r.stage != "world") {
+        wrong.push("Embree was not asked in world space".into());
     }
     for adapter in adapters {
         let label = format!("gpu@{}/", adapter.gpu.name);

@@ -33,7 +33,7 @@ pub struct Kernel {
 pub enum Pipeline {
     /// One entry point.
     Compute(wgpu::ComputePipeline),
-    /// `place` and a fragment entry point, without colour writes.
+    /// A vertex and a fragment entry point, without colour writes.
     Render(wgpu::RenderPipeline),
 }
 
@@ -59,7 +59,8 @@ pub struct Kernels {
     /// Where an entry point comes from, if not from the file that ships it.
     foreign: BTreeMap<&'static str, String>,
     programs: Mutex<BTreeMap<String, Arc<Module>>>,
-    kernels: Mutex<BTreeMap<(String, String), Arc<Kernel>>>,
+    /// By file, vertex entry point (none of a compute kernel's) and entry point.
+    kernels: Mutex<BTreeMap<(String, [String; 2]), Arc<Kernel>>>,
 }
 
 impl Kernels {
@@ -131,7 +132,7 @@ impl Kernels {
         self.programs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn kernels(&self) -> MutexGuard<'_, BTreeMap<(String, String), Arc<Kernel>>> {
+    fn kernels(&self) -> MutexGuard<'_, BTreeMap<(String, [String; 2]), Arc<Kernel>>> {
         self.kernels.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -140,7 +141,7 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn compute(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, entry, |ours, module| {
+        self.get(gpu, file, ["", entry], |ours, module| {
             let pipeline = gpu
                 .device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -159,12 +160,18 @@ impl Kernels {
         })
     }
 
-    /// The fragment kernel `entry` of `file`, fed by `place`.
+    /// The fragment kernel `entry` of `file`, fed by the vertex entry point `place`.
     ///
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
-    pub fn fragment(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, entry, |ours, module| {
+    pub fn fragment(
+        &self,
+        gpu: &Gpu,
+        file: &str,
+        place: &str,
+        entry: &str,
+    ) -> Result<Arc<Kernel>, GpuError> {
+        self.get(gpu, file, [place, entry], |ours, module| {
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,
@@ -177,7 +184,7 @@ impl Kernels {
                     layout: None,
                     vertex: wgpu::VertexState {
                         module: &ours.shader,
-                        entry_point: Some("place"),
+                        entry_point: Some(place),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         buffers: &[],
                     },
@@ -195,8 +202,8 @@ impl Kernels {
                 });
             Ok(Kernel {
                 pipeline: Pipeline::Render(pipeline),
-                bindings: bindings(ours, [(ours, "place"), (module, entry)]),
-                uses: uses([(ours, "place"), (module, entry)]),
+                bindings: bindings(ours, [(ours, place), (module, entry)]),
+                uses: uses([(ours, place), (module, entry)]),
             })
         })
     }
@@ -205,11 +212,11 @@ impl Kernels {
         &self,
         gpu: &Gpu,
         file: &str,
-        entry: &str,
+        [place, entry]: [&str; 2],
         make: impl FnOnce(&Module, &Module) -> Result<Kernel, GpuError>,
     ) -> Result<Arc<Kernel>, GpuError> {
         let mut kernels = self.kernels();
-        let key = (file.to_owned(), entry.to_owned());
+        let key = (file.to_owned(), [place, entry].map(str::to_owned));
         if let Some(kernel) = kernels.get(&key) {
             return Ok(kernel.clone());
         }

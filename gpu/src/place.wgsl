@@ -1,4 +1,5 @@
-// Fragment path: hands the snapped triangles to the hardware rasteriser.
+// Fragment path: hands the snapped triangles to the hardware rasteriser, or leaves the
+// snapping to it as well.
 
 //#import triangle
 
@@ -31,4 +32,14 @@ fn place(@builtin(vertex_index) index: u32) -> Placed {
     let scale = power_of_half(HALF_GUARD_EXPONENT + frame.bits);
     let ndc = vec2<f32>(at.xy - middle) * vec2(scale, -scale);
     return Placed(vec4(ndc, 0.5, 1.0), prim);
+}
+
+// Clip space for the same viewport, three corners a triangle: the driver divides, clips
+// and snaps.
+@group(0) @binding(12) var<storage, read> handed: array<vec4<f32>>;
+
+@vertex
+fn place_handed(@builtin(vertex_index) index: u32) -> Placed {
+    let prim = work[frame.work_first + index / 3u].x;
+    return Placed(handed[3u * prim + index % 3u], prim);
 }

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use triptych_spec::scene::Size;
-use triptych_spec::vertex::Primitives;
+use triptych_spec::vertex::{Position, Primitives, SUBPIXEL_BITS};
 
 use crate::context::Gpu;
 use crate::error::GpuError;
@@ -59,6 +59,8 @@ pub struct Rasterizer<'g> {
     pub size: Size,
     bits: u32,
     corners: wgpu::Buffer,
+    /// Clip space, where the driver is to divide, clip and snap.
+    handed: Option<wgpu::Buffer>,
     /// Colour of each triangle.
     pub faces: wgpu::Buffer,
     /// First and last row with a sample, of each triangle that has any.
@@ -94,9 +96,39 @@ impl<'g> Rasterizer<'g> {
             bits,
             rows: corners.iter().map(|c| sampled_rows(c, bits)).collect(),
             corners: gpu.upload("corners", &corners)?,
+            handed: None,
             faces: gpu.upload("faces", faces)?,
             target: target(gpu, primitives.size)?,
             passes: RefCell::default(),
+        })
+    }
+
+    /// Hands the driver triangles in the clip space of the guard rectangle: it divides,
+    /// clips and snaps itself. Only coverage means anything then; keys are 0. The path is
+    /// [`Path::Fragment`].
+    ///
+    /// # Errors
+    /// More triangles than the adapter can bind, or has memory for.
+    pub fn handed(
+        gpu: &'g Gpu,
+        kernels: &'g Kernels,
+        size: Size,
+        triangles: &[[Position<f32>; 3]],
+    ) -> Result<Self, GpuError> {
+        let nothing = Primitives {
+            size,
+            bits: SUBPIXEL_BITS,
+            snapped: vec![[0; 3]],
+            prims: vec![[0; 3]; triangles.len()],
+            source: Vec::new(),
+        };
+        let faces = vec![[0.0; 4]; triangles.len()];
+        let all = Self::new(gpu, kernels, Path::Fragment, &nothing, &faces)?;
+        Ok(Self {
+            // Only the driver knows where they lie.
+            rows: vec![Some([0, i64::from(size.height) - 1]); triangles.len()],
+            handed: Some(gpu.upload("handed", triangles)?),
+            ..all
         })
     }
 

@@ -3,11 +3,14 @@
 
 pub mod embree;
 pub mod fragments;
+pub mod handed;
 pub mod image;
 pub mod lists;
+pub mod moved;
 pub mod opaque;
 pub mod order;
 pub mod passes;
+pub mod region;
 pub mod vertex;
 
 use std::collections::BTreeMap;

@@ -1,8 +1,10 @@
-//! Embree as the third leg: what it sees of the snapped triangles in screen space.
+//! Embree as the third leg, asked twice.
 //!
-//! Parallel rays run through the samples of the target, and every triangle that
-//! Embree reports along them is collected ([`scene`]). Embree computes in `f32`;
-//! how far that can be trusted is derived, not measured ([`bound`]).
+//! In screen space, parallel rays run through the samples of the target, and every
+//! snapped triangle that Embree reports along them is collected ([`scene`]). In world
+//! space ([`world`]) these are the camera's rays ([`view`]), and the triangles are those
+//! of the scene, as loaded. Embree computes in `f32`; how far that can be trusted is
+//! derived, not measured ([`bound`], [`world::bound`]).
 //!
 //! The embree4-rs wrapper serves for building and tracing; only the library's
 //! version ([`mod@library`]) needs the bindings below it. Those are older than the
@@ -12,10 +14,13 @@
 
 pub mod bound;
 pub mod library;
+pub mod rounded;
 pub mod scene;
+pub mod view;
+pub mod world;
 
 pub use library::{Library, library};
-pub use scene::{EmbreeScene, Hit, RayHits};
+pub use scene::{EmbreeScene, Hit, RayHits, ScreenHits};
 
 /// Something that Embree refused to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

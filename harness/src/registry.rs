@@ -37,8 +37,12 @@ pub enum Twin {
     None(&'static str),
 }
 
-/// The vertex entry point of every pipeline on the fragment path, in `place.wgsl`.
+/// The file of the vertex entry points of every pipeline on the fragment path, and the
+/// entry point for the snapped triangles.
 pub const PLACE: &str = "place";
+
+/// The other: the driver divides, clips and snaps (`--vertex hardware`).
+pub const PLACE_HANDED: &str = "place_handed";
 
 /// All families, in the order in which they run.
 pub const FAMILIES: &[Family] = &[
@@ -120,6 +124,11 @@ pub const ROWS: &[(&str, &str)] = &[
     ("expect", "the spec with a scene's closed-form answers"),
     ("overflow", "attempts that ran out of nodes"),
     ("end to end", "all stages from the GPU's own vertices"),
+    (
+        "vertex",
+        "lists from the GPU's own vertices with the spec's own (--vertex gpu)",
+    ),
+    ("world", "coverage with Embree's in world space"),
     ("plan", "a leg with and without skipping"),
     ("leg", "a leg that could not run"),
     ("all", "a scene that could not be replayed"),

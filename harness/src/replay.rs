@@ -7,7 +7,9 @@ pub mod embree;
 pub mod end_to_end;
 pub mod facts;
 pub mod gpu;
+mod hardware;
 mod legs;
+mod own_vertices;
 pub mod pictures;
 pub mod rows;
 mod run;
@@ -30,10 +32,20 @@ use crate::row::{Class, Row};
 use crate::scene::{LoadError, load_entry};
 use crate::sheet::Sheet;
 use facts::Facts;
-use gpu::{Adapter, Broken, From};
+use gpu::{Adapter, Broken, From, Vertices};
 use rows::Rows;
 use run::{Run, Stop};
 use worst::Worst;
+
+/// Of which scenes Embree is asked in world space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Extent {
+    /// Those of at most [`embree::WORLD_MAX`] items, so that it costs a default run little
+    #[default]
+    Small,
+    /// All of them
+    All,
+}
 
 /// What to replay, and how.
 #[derive(Clone, Debug)]
@@ -44,10 +56,14 @@ pub struct Options {
     pub broken: Vec<Broken>,
     /// Replay through Embree.
     pub embree: bool,
+    /// Of which scenes Embree is asked in world space as well.
+    pub world: Extent,
     /// Raster paths.
     pub paths: Vec<Path>,
     /// From which stage on GPU legs use their own results.
     pub from: From,
+    /// Whose vertices GPU legs start from; goes with `from` ([`Vertices::from`]).
+    pub vertex: Vertices,
     /// Leave out what a scene does not need.
     pub skip: bool,
     /// In place of the scenes' own seeds.
@@ -66,8 +82,10 @@ impl Default for Options {
             gpu: true,
             broken: Vec::new(),
             embree: true,
+            world: Extent::default(),
             paths: Path::ALL.to_vec(),
             from: From::default(),
+            vertex: Vertices::default(),
             skip: true,
             seed: None,
             dump: None,

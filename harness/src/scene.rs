@@ -9,6 +9,7 @@ mod source;
 #[cfg(test)]
 mod tests;
 pub mod value;
+pub mod world;
 
 use std::path::Path;
 
@@ -20,6 +21,7 @@ use crate::error::InputError;
 use crate::mesh::Intake;
 use crate::text::{self, hex};
 use file::SceneFile;
+use world::World;
 
 /// Largest scene.toml in bytes. Parsing takes up to a hundred times as much memory.
 pub const FILE_MAX: u64 = 1 << 20;
@@ -50,6 +52,8 @@ pub struct Loaded {
     pub bare: bool,
     /// The scene as the legs see it.
     pub scene: Scene,
+    /// The same before the camera.
+    pub world: World,
     /// What was loaded.
     pub stats: Stats,
 }
@@ -180,7 +184,7 @@ fn of_parsed(
     places.map_err(|(span, message)| parsed.error(span, message))?;
     digest.update(parsed.file.seed.to_le_bytes());
     let meshes = source::load_all(intake, &parsed, &mut digest)?;
-    let scene = flatten::flatten(&parsed, &meshes)?;
+    let (scene, world) = flatten::flatten(&parsed, &meshes)?;
     let mut stats = source::stats(&meshes);
     stats.sha256 = hex(&digest.finalize());
     Ok(Loaded {
@@ -189,6 +193,7 @@ fn of_parsed(
         family: entry.family.clone(),
         file: parsed.file,
         scene,
+        world,
         stats,
     })
 }

@@ -32,8 +32,12 @@ impl Rasterizer<'_> {
         let kernel = match self.path {
             Path::Compute | Path::Native => self.kernels.compute(self.gpu, file, stage)?,
             Path::Fragment => {
-                self.kernels
-                    .fragment(self.gpu, file, &format!("{stage}_fragment"))?
+                let place = match self.handed {
+                    None => "place",
+                    Some(_) => "place_handed",
+                };
+                let entry = format!("{stage}_fragment");
+                self.kernels.fragment(self.gpu, file, place, &entry)?
             }
         };
         let pass = |batch: &super::work::Batch| {
@@ -50,6 +54,7 @@ impl Rasterizer<'_> {
                 ("work", &work.buffer),
                 ("faces", &self.faces),
             ];
+            all.extend(self.handed.as_ref().map(|handed| ("handed", handed)));
             all.extend_from_slice(buffers);
             Ok(Ready {
                 kernel: kernel.clone(),

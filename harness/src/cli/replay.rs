@@ -21,8 +21,8 @@ use crate::cache::Cache;
 use crate::corpus::Entry;
 use crate::dump::Dump;
 use crate::output::{complain, stdout};
-use crate::replay::gpu::{Adapter, Adapters, From};
-use crate::replay::{Options, Outcome, replay};
+use crate::replay::gpu::{Adapter, Adapters, From, Vertices};
+use crate::replay::{Extent, Options, Outcome, replay};
 use crate::report::{self, ReportInput, RunInfo};
 use crate::row::Summary;
 use crate::{corpus, embree, snapshot};
@@ -32,6 +32,8 @@ use crate::{corpus, embree, snapshot};
     triptych replay raster/ abuffer/quads\n  \
     triptych replay --adapter llvmpipe --path compute --json out.json\n  \
     triptych replay my.obj --dump dump --no-cache\n  \
+    triptych replay --vertex gpu raster/near-plane\n  \
+    triptych replay --vertex hardware --path fragment raster/\n  \
     triptych replay --kernel build=mine.wgsl abuffer/\n\n\
     A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
     JSON lines and exit code are those of the whole run.")]
@@ -51,9 +53,13 @@ pub struct Args {
     /// Only this raster path
     #[arg(long)]
     path: Option<PathName>,
+    /// Whose vertices the GPU's later stages get
+    #[arg(long, value_name = "WHOSE", default_value = "spec")]
+    vertex: Vertices,
     /// Feed the GPU with the spec's results before this stage, its own from there
-    #[arg(long, value_name = "STAGE", default_value = "cover")]
-    gpu_from: From,
+    /// [default: cover]
+    #[arg(long, value_name = "STAGE")]
+    gpu_from: Option<From>,
     /// The user's kernels of a stage in place of ours (repeatable); `STAGE=?` prints the
     /// stage's bindings as WGSL to start from
     #[arg(long, value_name = "STAGE=FILE")]
@@ -85,6 +91,7 @@ pub struct Args {
 enum Leg {
     Spec,
     Gpu,
+    /// In screen space, and in world space of every scene, however large
     Embree,
 }
 
@@ -119,8 +126,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     let entries = corpus::list(&corpus::root())?;
     let selected = corpus::select(&entries, &args.patterns, args.exact)?;
-    let mut options = args.options();
+    let mut options = args.options()?;
     all_run(&foreign, &options)?;
+    anyhow::ensure!(
+        foreign.is_empty() || options.vertex != Vertices::Hardware,
+        "--kernel has no part in --vertex hardware; leave one of them out"
+    );
     let found = args.adapters(&options, &foreign)?;
     if found.open.is_empty() && !found.broken.is_empty() {
         return could_not_run(found.broken);
@@ -275,31 +286,42 @@ impl Args {
         legs.extend(self.path.map(|path| chosen("--path", path)));
         let mut options = Vec::new();
         options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
-        if self.gpu_from != From::default() {
-            options.push(chosen("--gpu-from", self.gpu_from));
+        if self.vertex != Vertices::default() {
+            options.push(chosen("--vertex", self.vertex));
         }
+        let from = self.gpu_from.filter(|from| *from != From::default());
+        options.extend(from.map(|from| chosen("--gpu-from", from)));
         options.extend(self.kernel.iter().map(|kernel| option("--kernel", kernel)));
         options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
         Again { legs, options }
     }
 
-    fn options(&self) -> Options {
+    fn options(&self) -> anyhow::Result<Options> {
         let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
-        Options {
+        let from = self
+            .vertex
+            .from(self.gpu_from)
+            .map_err(anyhow::Error::msg)?;
+        Ok(Options {
             gpu: wanted(Leg::Gpu),
             broken: Vec::new(),
             embree: wanted(Leg::Embree),
+            world: match self.leg.contains(&Leg::Embree) {
+                true => Extent::All,
+                false => Extent::Small,
+            },
             paths: match self.path {
                 None => Options::default().paths,
                 Some(path) => vec![path.path()],
             },
-            from: self.gpu_from,
+            from,
+            vertex: self.vertex,
             skip: !self.no_skip,
             seed: self.seed,
             dump: self.dump.as_ref().map(Dump::new),
             pictures: true,
             cache: None,
-        }
+        })
     }
 }
 

@@ -28,33 +28,60 @@ mod band;
 mod edge;
 mod order;
 mod pair;
+mod pairs;
+mod screen;
 mod vote;
+mod world;
 
 use rayon::prelude::*;
+use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
-use crate::embree::{EmbreeError, RayHits};
+use crate::embree::world::World;
+use crate::embree::{EmbreeError, RayHits, ScreenHits};
 pub use pair::{DepthPair, Pair, pair};
+use pairs::Pairs;
+use screen::Screen;
 pub use vote::{Conflict, Disagreement, EmbreeVote};
+use world::InWorld;
 
 /// Rows of pixels that one task works through. Memory is proportional to the
 /// triangles that meet a band; the result does not depend on it.
 const BAND: u32 = 8;
 
-/// Compares the spec's coverage of `spec` with what Embree reports.
-///
-/// Deterministic: bands are independent, and summed in order.
+/// Compares the spec's coverage of `spec` with what Embree reports of the same triangles.
 ///
 /// # Errors
 /// The first error that Embree reports, in order of bands.
-pub fn compare<E: RayHits>(spec: &Primitives, embree: &E) -> Result<EmbreeVote, EmbreeError> {
-    let height = spec.size.height;
-    let rows = band::rows(spec);
+pub fn compare<E: ScreenHits>(spec: &Primitives, embree: &E) -> Result<EmbreeVote, EmbreeError> {
+    let depth = embree.depth();
+    in_bands(&Screen { spec, depth }, embree)
+}
+
+/// Compares the spec's coverage with what Embree reports of the scene in world space, and
+/// gives the share of the triangles' area that lies in class edge.
+///
+/// # Errors
+/// The first error that Embree reports, in order of bands.
+pub fn compare_world<E: RayHits>(
+    scene: &Scene,
+    world: &World,
+    spec: &Primitives,
+    embree: &E,
+) -> Result<(EmbreeVote, f64), EmbreeError> {
+    let pairs = InWorld::new(scene, world, spec);
+    Ok((in_bands(&pairs, embree)?, pairs.band_share()))
+}
+
+/// Deterministic: bands are independent, and summed in order.
+fn in_bands<P: Pairs, E: RayHits>(pairs: &P, embree: &E) -> Result<EmbreeVote, EmbreeError> {
+    let height = pairs.size().height;
+    let rows = band::rows(pairs);
     let bands: Vec<Result<EmbreeVote, EmbreeError>> = (0..height.div_ceil(BAND))
         .into_par_iter()
         .map(|band| {
             let first = band * BAND;
-            band::judge(spec, embree, &rows, first..(first + BAND).min(height))
+            band::judge(pairs, embree, &rows, first..(first + BAND).min(height))
         })
         .collect();
     let mut total = EmbreeVote::default();

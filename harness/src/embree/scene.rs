@@ -29,7 +29,7 @@ const COORDINATE_MAX: i32 = 1 << 21;
 /// A triangle that Embree reports along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Row in [`Primitives::prims`].
+    /// Row in [`Primitives::prims`]; in world space, in the scene's triangles.
     pub prim: u32,
     /// Distance along the ray; [`Depth::key`] translates it.
     pub t: f32,
@@ -37,15 +37,18 @@ pub struct Hit {
 
 /// An observation by rays through samples: Embree's, or a test's corruption of it.
 pub trait RayHits: Sync {
-    /// The scale of [`Hit::t`].
-    fn depth(&self) -> Depth;
-
     /// Replaces `hits` by every hit of the ray through a pixel's sample, in order of
     /// `(prim, t)`; a triangle may be reported more than once.
     ///
     /// # Errors
     /// If Embree reports one.
     fn hits(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError>;
+}
+
+/// An observation in screen space.
+pub trait ScreenHits: RayHits {
+    /// The scale of [`Hit::t`].
+    fn depth(&self) -> Depth;
 }
 
 /// How depth keys became Embree's z: `z = f32(key - base) * 2^-exponent`.
@@ -105,8 +108,7 @@ pub struct EmbreeScene {
 }
 
 impl EmbreeScene {
-    /// Builds the scene: robust mode, filter in the arguments, medium quality
-    /// (high quality may report a triangle of several leaves several times).
+    /// Builds the scene.
     ///
     /// # Errors
     /// If coordinates are not those of a guard rectangle with at most
@@ -118,7 +120,10 @@ impl EmbreeScene {
         let scene = if primitives.prims.is_empty() {
             None
         } else {
-            Some(commit(primitives, &depth)?)
+            let corner = |&[x, y, z]: &[i32; 3]| (x as f32, y as f32, depth.z(z));
+            let corners: Vec<_> = primitives.snapped.iter().map(corner).collect();
+            let prims = primitives.prims.iter().map(|prim| (*prim).into());
+            Some(commit(&corners, &prims.collect::<Vec<_>>())?)
         };
         Ok(Self {
             scene,
@@ -156,24 +161,20 @@ fn check(primitives: &Primitives) -> Result<(), EmbreeError> {
     })
 }
 
-fn commit(primitives: &Primitives, depth: &Depth) -> Result<CommittedScene, EmbreeError> {
-    let corners: Vec<(f32, f32, f32)> = primitives
-        .snapped
-        .iter()
-        .map(|&[x, y, z]| (x as f32, y as f32, depth.z(z)))
-        .collect();
-    let prims: Vec<(u32, u32, u32)> = primitives
-        .prims
-        .iter()
-        .map(|&[a, b, c]| (a, b, c))
-        .collect();
+/// Hands triangles to Embree: robust mode, filter in the arguments, medium quality (high
+/// quality may report a triangle of several leaves several times). The corners that
+/// `prims` names must be there.
+pub(super) fn commit(
+    corners: &[(f32, f32, f32)],
+    prims: &[(u32, u32, u32)],
+) -> Result<CommittedScene, EmbreeError> {
     let options = SceneOptions {
         build_quality: RTCBuildQuality::MEDIUM,
         flags: RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS,
     };
     let failed = |step| move |e| EmbreeError::new(step, e);
     let device = Device::try_new(Some(CONFIG)).map_err(failed("new device"))?;
-    let mesh = TriangleMeshGeometry::try_new(&device, &corners, &prims)
+    let mesh = TriangleMeshGeometry::try_new(&device, corners, prims)
         .map_err(failed("copy of the triangles"))?;
     let scene = Scene::try_new(device, options).map_err(failed("new scene"))?;
     scene
@@ -182,11 +183,13 @@ fn commit(primitives: &Primitives, depth: &Depth) -> Result<CommittedScene, Embr
     scene.commit().map_err(failed("building the tree"))
 }
 
-impl RayHits for EmbreeScene {
+impl ScreenHits for EmbreeScene {
     fn depth(&self) -> Depth {
         self.depth
     }
+}
 
+impl RayHits for EmbreeScene {
     fn hits(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
         hits.clear();
         if column >= self.size.width || row >= self.size.height {
@@ -202,9 +205,7 @@ impl RayHits for EmbreeScene {
             dir_z: 1.0,
             ..RTCRay::default()
         };
-        collect(scene, ray, hits)?;
-        hits.sort_unstable_by(|a, b| a.prim.cmp(&b.prim).then(a.t.total_cmp(&b.t)));
-        Ok(())
+        collect(scene, ray, hits)
     }
 }
 
@@ -220,8 +221,12 @@ struct Collector<'a> {
     hits: &'a mut Vec<Hit>,
 }
 
-/// Every hit of one ray.
-fn collect(scene: &CommittedScene, ray: RTCRay, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
+/// Every hit of one ray, in order of `(prim, t)`.
+pub(super) fn collect(
+    scene: &CommittedScene,
+    ray: RTCRay,
+    hits: &mut Vec<Hit>,
+) -> Result<(), EmbreeError> {
     let mut collector = Collector {
         context: RTCRayQueryContext {
             instID: [RTC_INVALID_GEOMETRY_ID],
@@ -241,10 +246,11 @@ fn collect(scene: &CommittedScene, ray: RTCRay, hits: &mut Vec<Hit>) -> Result<(
     let closest = scene
         .intersect_1(ray, Some(&arguments))
         .map_err(|e| EmbreeError::new("ray", e))?;
-    match closest {
-        None => Ok(()),
-        Some(_) => Err(EmbreeError::new("ray", "a hit went past the filter")),
+    if closest.is_some() {
+        return Err(EmbreeError::new("ray", "a hit went past the filter"));
     }
+    hits.sort_unstable_by(|a, b| a.prim.cmp(&b.prim).then(a.t.total_cmp(&b.t)));
+    Ok(())
 }
 
 /// The filter: notes the hit and rejects it, so that the ray goes on.

@@ -3,14 +3,22 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
+use triptych_spec::raster;
 use triptych_spec::scene::Scene;
 
+use super::Extent;
 use super::rows::Rows;
 use super::spec::SpecRun;
 use crate::compare::{self, Judgement, compare};
+use crate::embree::view::View;
+use crate::embree::world::{World, WorldScene};
 use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits};
 use crate::observe::{Embree, Observed, Spec};
 use crate::row::Class;
+use crate::scene::Loaded;
+
+/// The row of Embree's vote in world space.
+pub const WORLD: &str = "world";
 
 /// Asks Embree for its vote and adds the row; gives the scene for a picture, and the
 /// first pixels at which it disagrees.
@@ -84,6 +92,66 @@ fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgem
         judgement.skipped = Some(reason);
     }
     judgement
+}
+
+/// Triangles, pixels and fragments of a scene that Embree is asked of in world space by
+/// default. There a pair costs about twice what it does in screen space.
+pub const WORLD_MAX: u64 = 1 << 17;
+
+/// Asks Embree in world space and adds row [`WORLD`].
+pub fn run_world(
+    Loaded { scene, world, .. }: &Loaded,
+    extent: Extent,
+    spec: &Observed<Spec, SpecRun>,
+    rows: &mut Rows,
+) {
+    let skip = |rows: &mut Rows, reason: String| {
+        rows.skip(WORLD, &spec.label, "embree", Class::Vote, reason);
+    };
+    if scene.triangles.is_empty() {
+        return skip(rows, "plan: no triangles".to_owned());
+    }
+    if extent == Extent::Small {
+        let counts = [scene.triangles.len(), scene.size.pixels()];
+        let counts: u64 = counts.into_iter().map(|n| n as u64).sum();
+        let items = counts + raster::count(&spec.value.primitives);
+        if items > WORLD_MAX {
+            let reason = "in world space only if asked for: --leg embree".to_owned();
+            return skip(rows, reason);
+        }
+    }
+    let world = &World::new(&world.points(scene), View::new(world.camera, scene.size));
+    let start = Instant::now();
+    let failed = |rows: &mut Rows, error: &EmbreeError| {
+        rows.fail(WORLD, &spec.label, "embree", None, error.to_string());
+    };
+    let seen = match WorldScene::new(scene, world) {
+        Ok(seen) => Observed::<Embree, _>::new("embree", seen),
+        Err(error) => return failed(rows, &error),
+    };
+    let mut vote = Ok(());
+    let judgement = compare(spec, &seen, |spec, seen| {
+        let voted = compare::embree::compare_world(scene, world, &spec.primitives, seen);
+        match voted {
+            Ok((vote, share)) => {
+                let mut judgement = judge(&vote, None);
+                let share = 100.0 * share;
+                let note = &judgement.note;
+                judgement.note =
+                    format!("{note}; the band of class edge is {share:.3} % of the area");
+                judgement
+            }
+            Err(error) => {
+                vote = Err(error);
+                Judgement::new(Class::Vote, "pairs")
+            }
+        }
+    });
+    if let Err(error) = vote {
+        return failed(rows, &error);
+    }
+    let spec = spec.map(|_| ()).taking(spec.value.times.cover);
+    rows.add(WORLD, &spec, &seen.taking(start.elapsed()), judgement);
 }
 
 /// What Embree saw.

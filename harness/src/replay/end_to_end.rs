@@ -75,7 +75,7 @@ pub fn run(
 }
 
 /// How far the GPU's corners lie from the spec's, in words.
-fn moved(spec: &Primitives, own: &Primitives) -> String {
+pub(super) fn moved(spec: &Primitives, own: &Primitives) -> String {
     if (&spec.prims, &spec.source) != (&own.prims, &own.source) {
         return "triangles are clipped otherwise".into();
     }

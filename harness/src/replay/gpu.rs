@@ -3,6 +3,7 @@
 mod from;
 mod judge;
 mod lists;
+mod vertices;
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -27,6 +28,7 @@ use crate::plan::Plan;
 use crate::row::Class;
 pub use from::From;
 use lists::{join, relink};
+pub use vertices::Vertices;
 
 /// One GPU leg of one scene.
 pub struct GpuLeg<'a> {

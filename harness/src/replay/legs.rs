@@ -5,11 +5,11 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
 
-use super::gpu::{Adapter, Broken, From, GpuLeg};
+use super::gpu::{Adapter, Broken, From, GpuLeg, Vertices};
 use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
-use super::{Options, end_to_end, skips};
+use super::{Options, end_to_end, hardware, own_vertices, skips};
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -97,6 +97,13 @@ impl Run<'_> {
         }
         let spec = self.spec(adapter.bits(path))?;
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        if self.options.vertex == Vertices::Hardware {
+            let (scene, budget) = (&self.loaded.scene, self.vertex_budget());
+            if let Err(error) = hardware::run(adapter, path, scene, budget, &mut self.rows) {
+                self.refused("cover", &label, &spec.value, &error);
+            }
+            return Ok(());
+        }
         match self.leg_or_error(&spec, adapter, path) {
             Ok(dumped) => dumped.map_err(Stop::Dump),
             Err(error) => {
@@ -160,6 +167,9 @@ impl Run<'_> {
             };
             end_to_end::run(&leg, spec, &mut self.rows)?;
         }
+        if self.options.vertex == Vertices::Gpu {
+            own_vertices::run(&leg, spec, &seen, &mut self.rows);
+        }
         if self.tests_skipping(adapter, path) {
             let saved = skips::run(&leg, &seen, &mut self.rows)?;
             self.saved.extend(saved.map(|ms| (leg.label(), ms)));
@@ -211,8 +221,9 @@ impl Run<'_> {
     }
 
     /// The GPU's own vertex stages, compared with the spec's. They are the same for all
-    /// paths, so they are judged on the compute path, which takes the finest grid; the
-    /// triangles are given back where they are wanted and differ.
+    /// paths, so they are judged on the compute path, which takes the finest grid; on
+    /// each if its lists are to follow from them. The triangles are given back where they
+    /// are wanted and differ.
     fn vertices(
         &mut self,
         spec: &Observed<Spec, SpecRun>,
@@ -220,7 +231,8 @@ impl Run<'_> {
         path: Path,
     ) -> Result<Option<triptych_spec::vertex::Primitives>, GpuError> {
         let only_path = self.options.paths.len() == 1;
-        let judged = path == Path::Compute || only_path;
+        let followed = self.options.vertex == Vertices::Gpu;
+        let judged = path == Path::Compute || only_path || followed;
         let from = self.options.from;
         if !judged && from >= From::Cover {
             return Ok(None);
@@ -231,10 +243,14 @@ impl Run<'_> {
             scene: &self.loaded.scene,
             spec,
             from,
-            // A bare mesh states no budgets.
-            budget: (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0),
+            budget: self.vertex_budget(),
         };
         leg.run(judged.then_some(&mut self.rows))
+    }
+
+    /// A bare mesh states no budgets.
+    fn vertex_budget(&self) -> Option<f64> {
+        (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0)
     }
 
     /// From a later stage on than coverage, the spec's lists are given: nothing is skipped.

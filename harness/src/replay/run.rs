@@ -76,6 +76,7 @@ impl<'a> Run<'a> {
         self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
         if self.options.embree {
             self.unit(Uses::Embree, &["embree"], Self::embree)?;
+            self.unit(Uses::Embree, &["embree", embree::WORLD], Self::world)?;
         }
         if self.options.gpu {
             self.gpu()?;
@@ -127,12 +128,14 @@ impl<'a> Run<'a> {
         };
         let Options {
             from,
+            vertex,
+            world,
             skip,
             paths,
             pictures,
             ..
         } = self.options;
-        let options = format!("{from:?} {skip} {paths:?} {pictures}");
+        let options = format!("{from:?} {vertex:?} {world:?} {skip} {paths:?} {pictures}");
         let mut all = vec![
             self.loaded.name.as_str(),
             &self.loaded.stats.sha256,
@@ -242,6 +245,12 @@ impl<'a> Run<'a> {
             self.sheets.push(rays.sheet(&seen));
             self.unlike = unlike;
         }
+        Ok(())
+    }
+
+    fn world(&mut self) -> Result<(), Stop> {
+        let spec = self.spec(SUBPIXEL_BITS)?;
+        embree::run_world(self.loaded, self.options.world, &spec, &mut self.rows);
         Ok(())
     }
 }

@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use toml::Spanned;
-use triptych_spec::camera::{Camera, ENTRY_MAX, Projection};
+use triptych_spec::camera::{Camera, CameraError, ENTRY_MAX, Projection};
 use triptych_spec::matrix::Matrix;
 use triptych_spec::scene::{Scene, Triangle, Vertex};
 
 use super::file::{CameraEntry, MaterialEntry, MeshEntry};
 use super::source::Source;
 use super::value::{Point, Scale};
+use super::world::World;
 use super::{LoadError, Parsed, fit, shade};
 use crate::error::InputError;
 use crate::mesh::Named;
@@ -56,14 +57,14 @@ impl Placed<'_> {
     }
 }
 
-pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<Scene, LoadError> {
+pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<(Scene, World), LoadError> {
     let materials = materials(parsed)?;
     let entries = parsed.file.mesh.iter().zip(sources);
     let placed: Vec<Placed> = entries
         .map(|(entry, source)| place(parsed, &materials, entry, source))
         .collect::<Result<_, _>>()?;
     let size = parsed.file.size.0;
-    let view = view(parsed, &placed)?;
+    let (camera, view) = view(parsed, &placed)?;
     let mut scene = Scene {
         size,
         instances: Vec::new(),
@@ -75,7 +76,10 @@ pub(super) fn flatten(parsed: &Parsed, sources: &[Source]) -> Result<Scene, Load
     for mesh in &placed {
         append(&mut scene, parsed, &view, mesh, &mut primitive)?;
     }
-    Ok(scene)
+    // In the order of the scene's own.
+    let instances = placed.iter().flat_map(|mesh| &mesh.worlds);
+    let instances = instances.copied().collect();
+    Ok((scene, World { camera, instances }))
 }
 
 /// The scene's materials by name. Refuses two of one name.
@@ -195,18 +199,20 @@ fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     shown
 }
 
-/// Clip space from world space.
-fn view(parsed: &Parsed, placed: &[Placed]) -> Result<Matrix, InputError> {
+/// The camera, and clip space from world space.
+fn view(parsed: &Parsed, placed: &[Placed]) -> Result<(Camera, Matrix), InputError> {
     let size = parsed.file.size.0;
     let aspect = f64::from(size.width) / f64::from(size.height);
     let Some(entry) = &parsed.file.camera else {
         let points = || placed.iter().flat_map(Placed::points);
-        let fitted = fit::camera(points, aspect).matrix(aspect);
-        return fitted.map_err(|e| InputError::new(parsed.path, e.to_string()));
+        let camera = fit::camera(points, aspect);
+        let error = |e: CameraError| InputError::new(parsed.path, e.to_string());
+        return Ok((camera, camera.matrix(aspect).map_err(error)?));
     };
     let error = |message: String| parsed.error(entry.span(), message);
     let camera = camera(entry.get_ref()).map_err(error)?;
-    camera.matrix(aspect).map_err(|e| error(e.to_string()))
+    let matrix = camera.matrix(aspect).map_err(|e| error(e.to_string()))?;
+    Ok((camera, matrix))
 }
 
 fn camera(entry: &CameraEntry) -> Result<Camera, String> {

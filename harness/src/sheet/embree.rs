@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use triptych_spec::raster::sample;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::spec::{lattice, list, rounded};
 use super::{EMBREE_BYTES, Entry, Kind, Pixel, Sheet, pack, source, stride};
 use crate::compare::embree::{Pair, pair};
-use crate::embree::{EmbreeScene, Hit, RayHits};
+use crate::embree::{EmbreeScene, Hit, RayHits, ScreenHits};
 use crate::replay::embree::EmbreeSeen;
 use crate::replay::spec::SpecRun;
 
@@ -86,11 +85,10 @@ impl<'a> Rays<'a> {
         }
         hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.prim.cmp(&b.prim)));
         hits.dedup_by_key(|hit| hit.prim);
-        let point = [x, y].map(|n| sample(n, primitives.bits));
-        let mut all: Vec<Entry> = hits.iter().map(|hit| self.hit(point, hit)).collect();
+        let mut all: Vec<Entry> = hits.iter().map(|hit| self.hit([x, y], hit)).collect();
         for must in list(self.scene, self.spec, pixel, rounded) {
             if !hits.iter().any(|hit| hit.prim == must.prim) {
-                let pair = pair(primitives, &self.embree.depth(), must.prim, point, None);
+                let pair = pair(primitives, &self.embree.depth(), must.prim, [x, y], None);
                 let kind = match pair {
                     Pair::Missed => Kind::Missed,
                     _ => Kind::MissedUnjudged,
@@ -105,10 +103,10 @@ impl<'a> Rays<'a> {
         all
     }
 
-    fn hit(&self, point: [i64; 2], hit: &Hit) -> Entry {
+    fn hit(&self, pixel: [u32; 2], hit: &Hit) -> Entry {
         let primitives = &self.spec.primitives;
         let depth = self.embree.depth();
-        let kind = match pair(primitives, &depth, hit.prim, point, Some(hit.t)) {
+        let kind = match pair(primitives, &depth, hit.prim, pixel, Some(hit.t)) {
             Pair::Edge { .. } => Kind::Edge,
             Pair::Unresolved { .. } => Kind::Unresolved,
             Pair::Depth(depth) if depth.is_outside() => Kind::Depth,

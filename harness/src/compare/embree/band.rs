@@ -1,58 +1,55 @@
-//! Judging the pairs of a band of rows, pixel by pixel.
+//! Judging the pairs of a band of rows, pixel by pixel, whatever space they are in.
 
 use rayon::prelude::*;
-use triptych_spec::raster::{Setup, Span, sample};
-use triptych_spec::vertex::Primitives;
+use triptych_spec::raster::Span;
 
-use super::edge::EDGE_BITS;
 use super::order::{self, Seen};
-use super::pair::{DepthPair, Pair, Side};
+use super::pair::{DepthPair, Pair};
+use super::pairs::{Expected, Pairs};
 use super::vote::{Conflict, Disagreement, EmbreeVote};
-use crate::embree::bound::Triangle;
 use crate::embree::{EmbreeError, Hit, RayHits};
 
-/// A triangle that may cover samples of the band.
-struct Candidate {
+/// A triangle that may make pairs in the band.
+struct Candidate<P: Pairs> {
     prim: u32,
-    setup: Setup,
-    triangle: Triangle,
+    triangle: P::Candidate,
     rows: Span,
 }
 
 /// The columns of a row where a candidate makes a pair.
-#[derive(Clone, Copy)]
-struct Reach {
+#[derive(Clone)]
+struct Reach<R> {
     start: u32,
     end: u32,
+    row: R,
     /// Number of the candidate; they are in order of `prim`.
     candidate: usize,
 }
 
-struct Sweep<'a, E> {
-    spec: &'a Primitives,
+struct Sweep<'a, P, E> {
+    pairs: &'a P,
     embree: &'a E,
     vote: EmbreeVote,
     hits: Vec<Hit>,
     seen: Vec<Seen>,
 }
 
-/// The rows that each triangle may cover; none without area.
-pub(super) fn rows(spec: &Primitives) -> Vec<Span> {
-    let count = u32::try_from(spec.prims.len()).expect("Embree has accepted them");
-    let rows = |prim| Setup::new(spec, prim).map_or(0..0, |s| s.rows(spec.size, spec.bits));
-    (0..count).into_par_iter().map(rows).collect()
+/// The rows in which each triangle makes pairs.
+pub(super) fn rows(pairs: &impl Pairs) -> Vec<Span> {
+    let all = (0..pairs.count()).into_par_iter();
+    all.map(|prim| pairs.rows(prim)).collect()
 }
 
 /// Compares the rows `band`; `rows` is what [`rows`] says of the triangles.
-pub(super) fn judge<E: RayHits>(
-    spec: &Primitives,
+pub(super) fn judge<P: Pairs, E: RayHits>(
+    pairs: &P,
     embree: &E,
     rows: &[Span],
     band: Span,
 ) -> Result<EmbreeVote, EmbreeError> {
-    let candidates = candidates(spec, embree, rows, &band);
+    let candidates = candidates(pairs, rows, &band);
     let mut sweep = Sweep {
-        spec,
+        pairs,
         embree,
         vote: EmbreeVote::default(),
         hits: Vec::new(),
@@ -64,34 +61,26 @@ pub(super) fn judge<E: RayHits>(
     Ok(sweep.vote)
 }
 
-/// Triangles with area that reach one of the band's rows.
-fn candidates<E: RayHits>(
-    spec: &Primitives,
-    embree: &E,
-    rows: &[Span],
-    band: &Span,
-) -> Vec<Candidate> {
-    let depth = embree.depth();
-    let candidate = |(prim, rows): (u32, &Span)| {
-        let meets = rows.start < band.end && band.start < rows.end;
-        Some(Candidate {
-            prim,
-            setup: meets.then(|| Setup::new(spec, prim))??,
-            triangle: Triangle::new(spec, &depth, prim),
-            rows: rows.clone(),
-        })
+/// Triangles that reach one of the band's rows.
+fn candidates<P: Pairs>(pairs: &P, rows: &[Span], band: &Span) -> Vec<Candidate<P>> {
+    let meets = |rows: &Span| rows.start < band.end && band.start < rows.end;
+    let candidate = |(prim, rows): (u32, &Span)| Candidate {
+        prim,
+        triangle: pairs.candidate(prim),
+        rows: rows.clone(),
     };
-    (0_u32..).zip(rows).filter_map(candidate).collect()
+    let all = (0_u32..).zip(rows).filter(|(_, rows)| meets(rows));
+    all.map(candidate).collect()
 }
 
-impl<E: RayHits> Sweep<'_, E> {
+impl<P: Pairs, E: RayHits> Sweep<'_, P, E> {
     /// Sweeps a row from left to right. `active` holds the candidates that make a
     /// pair with the current pixel, in order of `prim`.
-    fn row(&mut self, row: u32, candidates: &[Candidate]) -> Result<(), EmbreeError> {
+    fn row(&mut self, row: u32, candidates: &[Candidate<P>]) -> Result<(), EmbreeError> {
         let reaches = self.reaches(row, candidates);
         let mut coming = reaches.into_iter().peekable();
-        let mut active: Vec<Reach> = Vec::new();
-        for column in 0..self.spec.size.width {
+        let mut active: Vec<Reach<P::Row>> = Vec::new();
+        for column in 0..self.pairs.size().width {
             active.retain(|reach| reach.end > column);
             let known = active.len();
             while let Some(reach) = coming.next_if(|reach| reach.start == column) {
@@ -106,21 +95,16 @@ impl<E: RayHits> Sweep<'_, E> {
     }
 
     /// Where the candidates are covered or near an edge, from left to right.
-    fn reaches(&self, row: u32, candidates: &[Candidate]) -> Vec<Reach> {
+    fn reaches(&mut self, row: u32, candidates: &[Candidate<P>]) -> Vec<Reach<P::Row>> {
         let mut reaches = Vec::new();
         for (candidate, c) in candidates.iter().enumerate() {
             if c.rows.contains(&row) {
-                // With E the least edge function, negative, the sum of all is at
-                // most area + 4 |E|, so class edge ends at |E| = area 2^-22
-                // (1 + 2^-19), which is below this as area is at most 2^40.
-                let least = -(c.setup.area >> EDGE_BITS) - 3;
-                let span = c
-                    .setup
-                    .span_above([least; 3], row, self.spec.size, self.spec.bits);
+                let (span, prepared) = self.pairs.reach(&c.triangle, row);
                 if !span.is_empty() {
                     reaches.push(Reach {
                         start: span.start,
                         end: span.end,
+                        row: prepared,
                         candidate,
                     });
                 }
@@ -135,8 +119,8 @@ impl<E: RayHits> Sweep<'_, E> {
         &mut self,
         column: u32,
         row: u32,
-        candidates: &[Candidate],
-        active: &[Reach],
+        candidates: &[Candidate<P>],
+        active: &[Reach<P::Row>],
     ) -> Result<(), EmbreeError> {
         let mut hits = std::mem::take(&mut self.hits);
         self.embree.hits(column, row, &mut hits)?;
@@ -146,19 +130,19 @@ impl<E: RayHits> Sweep<'_, E> {
         self.vote.rays += 1;
         self.seen.clear();
 
-        let point = [sample(column, self.spec.bits), sample(row, self.spec.bits)];
-        let pixel = row * self.spec.size.width + column;
+        let pixel = [column, row];
         let mut unjoined = hits.iter().peekable();
         for reach in active {
             let c = &candidates[reach.candidate];
             while let Some(stray) = unjoined.next_if(|hit| hit.prim < c.prim) {
-                self.stray(pixel, point, *stray);
+                self.stray(pixel, *stray);
             }
             let t = unjoined.next_if(|hit| hit.prim == c.prim).map(|hit| hit.t);
-            self.pair(pixel, c.prim, Some(&c.setup), &c.triangle, point, t);
+            let expected = self.pairs.expect(&c.triangle, &reach.row, pixel);
+            self.pair(pixel, c.prim, expected, t);
         }
         for stray in unjoined {
-            self.stray(pixel, point, *stray);
+            self.stray(pixel, *stray);
         }
         self.order(pixel);
         self.hits = hits;
@@ -166,37 +150,17 @@ impl<E: RayHits> Sweep<'_, E> {
     }
 
     /// A hit on a triangle that is nowhere near, or has no area, is judged too.
-    fn stray(&mut self, pixel: u32, point: [i64; 2], hit: Hit) {
-        let setup = Setup::new(self.spec, hit.prim);
-        let triangle = Triangle::new(self.spec, &self.embree.depth(), hit.prim);
-        self.pair(
-            pixel,
-            hit.prim,
-            setup.as_ref(),
-            &triangle,
-            point,
-            Some(hit.t),
-        );
+    fn stray(&mut self, pixel: [u32; 2], hit: Hit) {
+        let triangle = self.pairs.candidate(hit.prim);
+        let (_, row) = self.pairs.reach(&triangle, pixel[1]);
+        let expected = self.pairs.expect(&triangle, &row, pixel);
+        self.pair(pixel, hit.prim, expected, Some(hit.t));
     }
 
-    fn pair(
-        &mut self,
-        pixel: u32,
-        prim: u32,
-        setup: Option<&Setup>,
-        triangle: &Triangle,
-        point: [i64; 2],
-        hit: Option<f32>,
-    ) {
-        let side = Side {
-            spec: self.spec,
-            prim,
-            setup,
-            triangle,
-        };
+    fn pair(&mut self, pixel: [u32; 2], prim: u32, expected: Expected, hit: Option<f32>) {
         let vote = &mut self.vote;
         vote.pairs += 1;
-        match side.pair(&self.embree.depth(), point, hit) {
+        match expected.with(hit, |t| self.pairs.key(t)) {
             Pair::Edge { agree } => {
                 vote.edge += 1;
                 vote.edge_agreeing += u64::from(agree);
@@ -222,7 +186,7 @@ impl<E: RayHits> Sweep<'_, E> {
     }
 
     /// Judges a depth, and notes it for [`Self::order`].
-    fn depth(&mut self, pixel: u32, prim: u32, depth: DepthPair, t: f32) {
+    fn depth(&mut self, pixel: [u32; 2], prim: u32, depth: DepthPair, t: f32) {
         let DepthPair { key, embree, bound } = depth;
         let exact = f64::from(key);
         self.vote.depths += 1;
@@ -240,7 +204,7 @@ impl<E: RayHits> Sweep<'_, E> {
     }
 
     /// Compares the order along a ray.
-    fn order(&mut self, pixel: u32) {
+    fn order(&mut self, pixel: [u32; 2]) {
         let mut seen = std::mem::take(&mut self.seen);
         let disorder = |prim| self.conflict(pixel, prim, Conflict::Order);
         let (steps, disordered) = order::judge(&mut seen, disorder);
@@ -249,9 +213,9 @@ impl<E: RayHits> Sweep<'_, E> {
         self.seen = seen;
     }
 
-    fn conflict(&mut self, pixel: u32, prim: u32, conflict: Conflict) {
+    fn conflict(&mut self, [column, row]: [u32; 2], prim: u32, conflict: Conflict) {
         self.vote.keep(Disagreement {
-            pixel,
+            pixel: row * self.pairs.size().width + column,
             prim,
             conflict,
         });

@@ -1,10 +1,9 @@
 //! One pair of a ray and a triangle.
 
-use triptych_spec::raster::Setup;
 use triptych_spec::vertex::Primitives;
 
-use super::edge::{flat_edges, is_edge};
-use crate::embree::bound::{Promise, Triangle};
+use super::pairs::{Class, Expected, Pairs};
+use super::screen::Screen;
 use crate::embree::scene::Depth;
 
 /// What the spec and Embree make of a pair.
@@ -54,59 +53,44 @@ impl DepthPair {
     }
 }
 
-/// A triangle as pairs need it; `setup` is `None` without area.
-pub(super) struct Side<'a> {
-    pub spec: &'a Primitives,
-    pub prim: u32,
-    pub setup: Option<&'a Setup>,
-    pub triangle: &'a Triangle,
-}
-
-impl Side<'_> {
-    /// The pair of this triangle and the ray through a point; `hit` is Embree's t. The
-    /// class is decided before what Embree says is looked at.
-    pub(super) fn pair(&self, depth: &Depth, point: [i64; 2], hit: Option<f32>) -> Pair {
-        let flat = || flat_edges(self.spec, self.prim, point);
-        let edges = self.setup.map_or_else(flat, |s| s.edges(point));
-        let covered = self.setup.is_some_and(|s| s.covers(edges));
+impl Expected {
+    /// The pair of what must come of it and what Embree says: its t, if it reports the
+    /// triangle, which `key` makes a depth key.
+    pub(super) fn with(self, hit: Option<f32>, key: impl Fn(f32) -> f64) -> Pair {
+        let Self { covered, class } = self;
         let agree = covered == hit.is_some();
-        if is_edge(edges) {
-            return Pair::Edge { agree };
-        }
-        let promise = self.triangle.promise(point);
-        if promise == Promise::Unresolved {
-            return Pair::Unresolved { agree };
-        }
-        // What is expected is the spec's word; the promise only says that Embree
+        let depth = match class {
+            Class::Edge => return Pair::Edge { agree },
+            Class::Unresolved => return Pair::Unresolved { agree },
+            Class::Judged { depth } => depth,
+        };
+        // What is expected is the spec's word; the class only says that Embree
         // is able to give it, and how precise its depth is.
-        match (self.setup, promise, hit) {
-            (Some(setup), Promise::Hit { bound }, Some(t)) if covered => Pair::Depth(DepthPair {
-                key: setup.key(edges),
-                embree: depth.key(t),
-                // The key is the floor of the exact depth: one key more on that side.
-                bound: bound + 1.0,
+        match (depth, hit) {
+            (Some((exact, bound)), Some(t)) => Pair::Depth(DepthPair {
+                key: exact,
+                embree: key(t),
+                bound,
             }),
-            (_, _, None) if covered => Pair::Missed,
-            (_, _, Some(_)) => Pair::Invented,
-            (_, _, None) => Pair::Neither,
+            (_, None) if covered => Pair::Missed,
+            (None, Some(_)) => Pair::Invented,
+            (_, None) => Pair::Neither,
         }
     }
 }
 
-/// The pair of any triangle and the ray through a point.
+/// The pair of any triangle and the ray through a pixel's sample, in screen space.
 pub fn pair(
     spec: &Primitives,
     depth: &Depth,
     prim: u32,
-    point: [i64; 2],
+    pixel: [u32; 2],
     hit: Option<f32>,
 ) -> Pair {
-    let setup = Setup::new(spec, prim);
-    let side = Side {
+    let screen = Screen {
         spec,
-        prim,
-        setup: setup.as_ref(),
-        triangle: &Triangle::new(spec, depth, prim),
+        depth: *depth,
     };
-    side.pair(depth, point, hit)
+    let expected = screen.expect(&screen.candidate(prim), &(), pixel);
+    expected.with(hit, |t| screen.key(t))
 }

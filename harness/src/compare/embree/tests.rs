@@ -1,6 +1,7 @@
 //! The comparer on scenes whose answer is known.
 
 mod planted;
+mod world;
 
 use triptych_spec::raster::{Setup, cover, sample};
 use triptych_spec::scene::Size;
@@ -8,7 +9,7 @@ use triptych_spec::vertex::{DEPTH_ONE, Primitives};
 
 use super::edge::is_edge;
 use super::{EmbreeVote, compare};
-use crate::embree::{EmbreeScene, RayHits};
+use crate::embree::{EmbreeScene, ScreenHits};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 struct Random(u64);
@@ -83,7 +84,7 @@ fn three() -> Primitives {
     scene(64, &[covering, elsewhere, flat])
 }
 
-fn vote(spec: &Primitives, embree: &impl RayHits) -> EmbreeVote {
+fn vote(spec: &Primitives, embree: &impl ScreenHits) -> EmbreeVote {
     compare(spec, embree).expect("Embree traces")
 }
 

@@ -4,16 +4,18 @@ use super::{embree, large, three, vote};
 use crate::cause::Cause;
 use crate::compare::embree::Conflict;
 use crate::embree::scene::Depth;
-use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits};
+use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits, ScreenHits};
 
 /// Embree's hits after a change: row-major pixel and hits.
 struct Changed<F>(EmbreeScene, F);
 
-impl<F: Fn(u32, &mut Vec<Hit>) + Sync> RayHits for Changed<F> {
+impl<F: Fn(u32, &mut Vec<Hit>) + Sync> ScreenHits for Changed<F> {
     fn depth(&self) -> Depth {
         self.0.depth()
     }
+}
 
+impl<F: Fn(u32, &mut Vec<Hit>) + Sync> RayHits for Changed<F> {
     fn hits(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
         self.0.hits(column, row, hits)?;
         (self.1)(row * 64 + column, hits);

@@ -1,0 +1,145 @@
+//! Drivers played by the spec: it clips, rounds and covers what they are handed.
+
+use triptych_spec::matrix::Matrix;
+use triptych_spec::raster::{Fragment, cover};
+use triptych_spec::scene::{Scene, Size, Triangle, Vertex};
+use triptych_spec::vertex::{clip, snap, transform};
+
+use super::Handed;
+use crate::cause::Cause;
+use crate::compare::Judgement;
+
+const SIZE: Size = Size {
+    width: 48,
+    height: 32,
+};
+
+/// A step of a grid of 8 bits.
+const STEP: f64 = 1.0 / 256.0;
+
+/// Triangles in clip space: in view, across the near and the far plane and far out of the
+/// guard rectangle, and out of view.
+fn scene() -> Scene {
+    let triangles = [
+        [[-0.7, -0.6, 0.2], [0.8, -0.5, 0.3], [0.1, 0.9, 0.9]],
+        [[-0.9, -0.9, -0.5], [0.9, -0.3, 0.8], [0.0, 0.7, 0.4]],
+        [[-0.5, 0.9, 1.4], [0.6, 0.8, 0.6], [0.2, -0.9, 0.1]],
+        [[-900.0, -3.0, 0.5], [900.0, -2.0, 0.5], [0.3, 0.4, 0.5]],
+        [[2.0, 2.0, 0.5], [3.0, 2.0, 0.5], [2.0, 3.0, 0.5]],
+        [[-0.5, -0.5, 2.0], [0.5, -0.5, 2.0], [0.0, 0.5, 2.0]],
+    ];
+    let vertex = |position| Vertex {
+        position,
+        instance: 0,
+    };
+    let triangle = |t: u32| Triangle {
+        vertices: [3 * t, 3 * t + 1, 3 * t + 2],
+        instance: 0,
+        primitive: t,
+        colour: [0.0; 4],
+    };
+    Scene {
+        size: SIZE,
+        instances: vec![Matrix::IDENTITY],
+        vertices: triangles.into_iter().flatten().map(vertex).collect(),
+        triangles: (0..6).map(triangle).collect(),
+        background: [0.0; 3],
+    }
+}
+
+/// What a driver makes of a scene that rounds to 8 bits.
+fn driver(scene: &Scene) -> Vec<Fragment> {
+    let snapped = snap(scene, &clip(scene, &transform(scene)), 8);
+    let mut fragments = Vec::new();
+    cover(&snapped, |f| {
+        let prim = snapped.source[f.prim as usize];
+        fragments.push(Fragment { prim, ..f });
+    });
+    fragments
+}
+
+fn judge(seen: &[Fragment]) -> Judgement {
+    let [pairs, triangles] = Handed::new(&scene(), STEP).judge(seen);
+    assert_eq!((triangles.compared, triangles.admitted), (6, 0));
+    pairs
+}
+
+/// The scene after a change of a triangle's vertices.
+fn changed(triangle: usize, change: impl Fn(&mut [f32; 3])) -> Vec<Fragment> {
+    let mut scene = scene();
+    let vertices = &mut scene.vertices[3 * triangle..3 * triangle + 3];
+    vertices.iter_mut().for_each(|v| change(&mut v.position));
+    driver(&scene)
+}
+
+#[test]
+fn a_driver_that_is_right_agrees() {
+    let judgement = judge(&driver(&scene()));
+    assert_eq!(judgement.differ(), 0, "{:?}", judgement.described);
+    assert!(judgement.compared > 1000, "{}", judgement.note);
+    assert!(
+        judgement.admitted * 20 < judgement.compared,
+        "{}",
+        judgement.note
+    );
+}
+
+#[test]
+fn corners_off_by_more_than_a_step_are_seen() {
+    // 2^-5 pixels: eight steps, of which a sample on every eighth row or column sees one.
+    let by = 2.0 / 48.0 / 8.0;
+    let judgement = judge(&changed(0, |v| v[0] += by));
+    assert_eq!(
+        judgement.causes.keys().copied().collect::<Vec<_>>(),
+        [Cause::Coverage]
+    );
+}
+
+#[test]
+fn planes_that_cut_elsewhere_are_seen() {
+    for (triangle, by) in [(1, 0.05), (1, -0.05), (2, 0.05), (2, -0.05)] {
+        let judgement = judge(&changed(triangle, |v| v[2] += by));
+        assert!(
+            judgement.causes.contains_key(&Cause::Coverage),
+            "{triangle} {by}"
+        );
+    }
+    // What is out of view must not be seen.
+    let judgement = judge(&changed(5, |v| v[2] = 0.5));
+    assert!(judgement.causes.contains_key(&Cause::Coverage));
+}
+
+#[test]
+fn fragments_that_are_lost_and_come_twice_are_seen() {
+    let clean = driver(&scene());
+    let middle = clean
+        .iter()
+        .position(|f| f.prim == 0 && f.pixel == 16 * 48 + 24);
+    let middle = middle.expect("it is covered");
+    let mut lost = clean.clone();
+    lost.remove(middle);
+    assert_eq!(judge(&lost).causes, [(Cause::Coverage, 1)].into());
+    let mut twice = clean.clone();
+    twice.push(clean[middle]);
+    assert_eq!(judge(&twice).causes, [(Cause::Duplicate, 1)].into());
+    assert!(judge(&[]).differ() > 1000, "nothing is covered");
+}
+
+/// A corner in view so near the eye that its w is as small as rounding.
+#[test]
+fn what_cannot_be_judged_is_counted() {
+    let mut scene = scene();
+    // The eye is just behind the near plane, where z = 0.
+    scene.instances[0].rows[3] = [0.0, 0.0, 1.0, 1e-6];
+    scene.instances[0].rows[2] = [0.0, 0.0, 1.0, 0.0];
+    let handed = Handed::new(&scene, STEP);
+    let [pairs, triangles] = handed.judge(&driver(&scene));
+    assert_eq!(pairs.differ(), 0, "{:?}", pairs.described);
+    assert!(triangles.admitted > 0, "{}", triangles.note);
+    assert!(triangles.note.contains("unjudged"), "{}", triangles.note);
+    assert!(
+        triangles.admitted < triangles.compared,
+        "{}",
+        triangles.note
+    );
+}

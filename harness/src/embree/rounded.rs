@@ -1,0 +1,85 @@
+//! Running error bounds of `f32` arithmetic that rounds to nearest, as Embree's does.
+
+/// Relative error of one operation rounded to nearest.
+pub const U: f64 = f32::EPSILON as f64 / 2.0;
+
+/// What flushing a subnormal changes at most.
+const TINY: f64 = f32::MIN_POSITIVE as f64;
+
+/// A number, up to `f64`, and the largest error of its evaluation in `f32`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rounded {
+    /// The number.
+    pub value: f64,
+    /// Largest distance of what `f32` arithmetic makes of it.
+    pub error: f64,
+}
+
+impl Rounded {
+    /// A number that is handed on as an `f32`.
+    pub fn once(value: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "the rounding in question")]
+        let single = f64::from(value as f32);
+        Self {
+            value,
+            error: (single - value).abs(),
+        }
+    }
+
+    /// The result of an operation whose operands' errors amount to `propagated`.
+    fn of(value: f64, propagated: f64) -> Self {
+        Self {
+            value,
+            error: propagated + U * (value.abs() + propagated) + TINY,
+        }
+    }
+
+    /// Sum.
+    pub fn add(self, other: Self) -> Self {
+        Self::of(self.value + other.value, self.error + other.error)
+    }
+
+    /// Difference.
+    pub fn sub(self, other: Self) -> Self {
+        Self::of(self.value - other.value, self.error + other.error)
+    }
+
+    /// Product.
+    pub fn mul(self, other: Self) -> Self {
+        let propagated = self.value.abs() * other.error
+            + other.value.abs() * self.error
+            + self.error * other.error;
+        Self::of(self.value * other.value, propagated)
+    }
+
+    /// Either of two ways to one number.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            error: self.error.max(other.error),
+            ..self
+        }
+    }
+}
+
+/// Three of them.
+pub type Vector = [Rounded; 3];
+
+/// Vector product.
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    let term = |i: usize, j: usize| a[i].mul(b[j]).sub(a[j].mul(b[i]));
+    [term(1, 2), term(2, 0), term(0, 1)]
+}
+
+/// Scalar product; sums may come in any order.
+pub fn dot(a: Vector, b: Vector) -> Rounded {
+    let terms = [0, 1, 2].map(|i| a[i].mul(b[i]));
+    let sum = terms[0].add(terms[1]).add(terms[2]);
+    // Another order rounds another partial sum, which is at most that of the terms' sizes.
+    let sizes: f64 = terms.iter().map(|t| t.value.abs() + t.error).sum();
+    Rounded {
+        error: sum
+            .error
+            .max(terms.iter().map(|t| t.error).sum::<f64>() + 2.1 * U * sizes),
+        ..sum
+    }
+}
