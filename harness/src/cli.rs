@@ -2,6 +2,7 @@
 //! run.
 
 mod adapters;
+mod bench;
 mod doctor;
 mod kernel;
 mod list;
@@ -46,6 +47,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// What holds at the extremes, and by how much
+    Bench(bench::Args),
     /// What is installed, which adapters there are, and what is missing
     Doctor,
     /// The scenes of the corpus
@@ -63,6 +66,7 @@ enum Command {
 /// Runs the command line that the process was given.
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
+        Command::Bench(args) => bench::run(&args),
         Command::Doctor => doctor::run(),
         Command::List(args) => list::run(&args),
         Command::Mutants(args) => mutants::run(&args),

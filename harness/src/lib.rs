@@ -26,6 +26,7 @@ pub mod replay;
 pub mod report;
 pub mod row;
 pub mod scene;
+pub mod stress;
 pub mod terminal;
 pub mod text;
 pub mod vector;

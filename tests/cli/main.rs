@@ -12,6 +12,7 @@ mod mutants;
 mod output;
 mod outside;
 mod results;
+mod stress;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -226,8 +226,10 @@ impl<E: RayHits> Sweep<'_, E> {
         // The key is the floor of the exact depth: one key more on that side.
         let bound = bound + 1.0;
         let (exact, embree) = (f64::from(key), self.embree.depth().key(t));
-        let error = (embree - exact).abs() / bound;
+        let error_keys = (embree - exact).abs();
+        let error = error_keys / bound;
         self.vote.depths += 1;
+        self.vote.error_keys = self.vote.error_keys.max(error_keys);
         self.vote.error_over_bound = self.vote.error_over_bound.max(error);
         if error > 1.0 || error.is_nan() {
             self.vote.depths_outside += 1;

@@ -185,6 +185,24 @@ fn a_missing_or_additional_polygon_is_reported() {
     }
 }
 
+/// Edges that meet in a vertex of a plane are cut there, each from its own other end:
+/// nothing promises that the roundings of two of them are alike.
+#[test]
+fn points_of_different_edges_need_not_be_one() {
+    let scene = hub_in_plane();
+    let mut apart = 0;
+    for gpu in devices() {
+        let run = run_with(&gpu, Sources::shipped(false), &scene);
+        let report = Judged::new(&scene, &run).clip;
+        assert!(report.agrees(), "{}: {:?}", gpu.name, report.told);
+        let hub = run.positions[0];
+        let polygons = run.polygons.expect("they were asked for");
+        let near = |c: &&Position<f32>| (c[0] - hub[0]).abs() < 1.0 && c[0] != hub[0];
+        apart += polygons.corners.iter().filter(near).count();
+    }
+    assert!(apart > 0, "no device rounded: the scene shows nothing");
+}
+
 #[test]
 fn where_nothing_is_promised_nothing_is_judged_but_counted() {
     // Beyond the largest f32 in clip space: no number has a finite bound.
