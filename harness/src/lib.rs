@@ -12,6 +12,7 @@ pub mod digest;
 pub mod dump;
 pub mod embree;
 pub mod error;
+pub mod findings;
 pub mod generate;
 pub mod json;
 pub mod mesh;
