@@ -68,7 +68,7 @@ fn another_stage_or_cause_is_not_what_was_found() {
     let (stage, cause) = (stage.expect("stated"), cause.expect("stated"));
     assert_eq!(finding.judge(&[cell(stage, cause)]), [""; 0]);
     let others = [
-        cell("resolve", cause),
+        cell("snap", cause),
         cell(stage, crate::cause::Cause::TieOrder),
     ];
     for other in others {
