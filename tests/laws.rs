@@ -3,11 +3,11 @@
 //! | module | laws |
 //! |---|---|
 //! | `bound` | whatever rounding, fusing, flushing and order WGSL allows stays inside the bounds |
-//! | `vertex` | neighbours share clip points; powers of two; permutation; ranges; what is visible stays |
+//! | `vertex` | neighbours share clip points; powers of two; permutation; translation; ranges; what is visible stays |
 //! | `raster` | brute force; permutation; translation; refinement; winding |
-//! | `raster::partition` | splits, fans and grids cover each sample exactly once; closed meshes alternate |
-//! | `abuffer` | lists, capacity, conservation, order of insertion |
-//! | `abuffer::resolve` | closed forms and bounds of blending |
+//! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
+//! | `abuffer` | lists, capacity, conservation, permutation, order of insertion |
+//! | `abuffer::resolve` | closed forms and bounds of blending; powers of two |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:

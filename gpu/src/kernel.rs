@@ -49,6 +49,8 @@ pub enum Fault {
     HeadsNotCleared,
     /// The counter starts where another frame left it.
     CounterNotCleared,
+    /// A fragment kernel that returns a colour writes it.
+    ColourWritten,
 }
 
 /// The kernels of one device, compiled when first asked for.
@@ -172,10 +174,14 @@ impl Kernels {
         entry: &str,
     ) -> Result<Arc<Kernel>, GpuError> {
         self.get(gpu, file, [place, entry], |ours, module| {
+            let returns = self.fault == Some(Fault::ColourWritten) && module.returns(entry);
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,
-                write_mask: wgpu::ColorWrites::empty(),
+                write_mask: match returns {
+                    true => wgpu::ColorWrites::ALL,
+                    false => wgpu::ColorWrites::empty(),
+                },
             };
             let pipeline = gpu
                 .device
@@ -239,6 +245,14 @@ impl Kernels {
         let module = Arc::new(Module::new(gpu, &self.sources, file, self.checks)?);
         programs.insert(file.to_owned(), module.clone());
         Ok(module)
+    }
+}
+
+impl Module {
+    /// Whether an entry point returns anything.
+    fn returns(&self, entry: &str) -> bool {
+        let mut entries = self.program.module.entry_points.iter();
+        entries.any(|e| e.name == entry && e.function.result.is_some())
     }
 }
 

@@ -49,8 +49,9 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Measure time against error
-    Bench(bench::Args),
+    /// Measure: time against error, and what holds at the extremes
+    #[command(subcommand)]
+    Bench(bench::Bench),
     /// Put a scene into the corpus, replay it, and leave its snapshot for review
     Add(add::Args),
     /// Pack what a machine without a toolchain needs

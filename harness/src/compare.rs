@@ -39,6 +39,8 @@ pub struct Judgement {
     pub admitted: u64,
     /// Largest share of `admitted` that passes.
     pub admitted_budget: Option<f64>,
+    /// Largest error, in the unit that [`crate::row::Row::error`] states.
+    pub error: Option<f64>,
     /// Largest error over bound.
     pub error_over_bound: Option<f64>,
     /// The first differences, in words.
@@ -62,6 +64,7 @@ impl Judgement {
             unexplained: 0,
             admitted: 0,
             admitted_budget: None,
+            error: None,
             error_over_bound: None,
             described: Vec::new(),
             marks: Vec::new(),
@@ -106,11 +109,9 @@ impl Judgement {
             for (cause, count) in part.causes {
                 *total.causes.entry(cause).or_default() += count;
             }
-            let worst = total
-                .error_over_bound
-                .into_iter()
-                .chain(part.error_over_bound);
-            total.error_over_bound = worst.reduce(f64::max);
+            let larger = |a: Option<f64>, b| a.into_iter().chain(b).reduce(f64::max);
+            total.error = larger(total.error, part.error);
+            total.error_over_bound = larger(total.error_over_bound, part.error_over_bound);
             total.marks.extend(part.marks);
             let room = DESCRIBED_MAX.saturating_sub(total.described.len());
             total

@@ -47,6 +47,10 @@ pub fn meshes() -> PathBuf {
     native().join("meshes")
 }
 
+/// The folder of the corpus that holds no scenes for every leg, but what single drivers do
+/// wrong ([`crate::findings`]).
+pub const FINDINGS: &str = "findings";
+
 /// Every scene of the corpus, by name.
 ///
 /// # Errors
@@ -54,6 +58,9 @@ pub fn meshes() -> PathBuf {
 pub fn list(root: &Path) -> Result<Vec<Entry>, InputError> {
     let mut entries = Vec::new();
     for family in folders(root)? {
+        if family == FINDINGS {
+            continue;
+        }
         for case in folders(&root.join(&family))? {
             let path = root.join(&family).join(&case).join("scene.toml");
             if !path.is_file() {
@@ -73,7 +80,7 @@ pub fn list(root: &Path) -> Result<Vec<Entry>, InputError> {
 }
 
 /// Names of the folders in a folder, sorted; hidden ones left out.
-fn folders(at: &Path) -> Result<Vec<String>, InputError> {
+pub(crate) fn folders(at: &Path) -> Result<Vec<String>, InputError> {
     let fail = |e: std::io::Error| InputError::new(at, format!("cannot be read: {e}"));
     let mut names = Vec::new();
     for entry in std::fs::read_dir(at).map_err(fail)? {

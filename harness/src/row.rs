@@ -56,6 +56,11 @@ pub struct Row {
     pub admitted: u64,
     /// Largest share of `admitted` that passes.
     pub admitted_budget: Option<f64>,
+    /// Largest error, where there is a bound: in homogeneous pixels for `transform` and
+    /// `clip`, in sub-pixels for `snap`, in keys for Embree, in linear colour for
+    /// `resolve`.
+    #[serde(default)]
+    pub error: Option<f64>,
     /// Largest error over bound, where the class is an interval.
     pub error_over_bound: Option<f64>,
     /// Why nothing was compared; null if something was.

@@ -14,6 +14,7 @@ mod mutants;
 mod output;
 mod outside;
 mod results;
+mod stress;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -62,7 +62,7 @@ pub fn coloured(soup: impl Strategy<Value = Primitives>) -> impl Strategy<Value 
 }
 
 /// A scene whose triangles have these colours. The raster stage looks at nothing else.
-fn painted(primitives: &Primitives, colours: &[[f32; 4]], background: [f32; 3]) -> Scene {
+pub fn painted(primitives: &Primitives, colours: &[[f32; 4]], background: [f32; 3]) -> Scene {
     let triangle = |(primitive, colour): (u32, &[f32; 4])| Triangle {
         vertices: [0; 3],
         instance: 0,
@@ -121,6 +121,24 @@ impl Layers {
             here.filter(front).copied().collect()
         };
         (0..self.pixels()).map(at).collect()
+    }
+
+    /// Key, mask and colour of everything in each pixel's list, in some order of their own.
+    fn contents(&self) -> Vec<Vec<(u32, u32, [u32; 4])>> {
+        let sorted = sort(&self.build(true, u32::MAX));
+        let content = |f: &Fragment| {
+            let source = self.primitives.source[f.prim as usize];
+            let colour = self.scene.triangles[source as usize].colour;
+            (f.key, f.mask, colour.map(f32::to_bits))
+        };
+        let mut lists: Vec<Vec<_>> = by_pixel(&sorted)
+            .iter()
+            .map(|list| list.iter().map(content).collect())
+            .collect();
+        lists
+            .iter_mut()
+            .for_each(|list: &mut Vec<_>| list.sort_unstable());
+        lists
     }
 
     fn pixels(&self) -> u32 {
@@ -256,6 +274,24 @@ proptest! {
             once.dedup();
             prop_assert_eq!(&once, kept);
         }
+    }
+
+    /// Reordered triangles leave in every pixel what was there: keys, masks and colours,
+    /// and the key of the opaque surface. Only which of equal keys comes first is theirs.
+    #[test]
+    fn permutation(
+        (layers, order) in layers(0..8).prop_flat_map(|layers| {
+            let order: Vec<usize> = (0..layers.primitives.prims.len()).collect();
+            (Just(layers), Just(order).prop_shuffle())
+        })
+    ) {
+        let rows = |rows: &[u32]| order.iter().map(|row| rows[*row]).collect::<Vec<_>>();
+        let mut shuffled = layers.clone();
+        shuffled.primitives.source = rows(&layers.primitives.source);
+        let prims = order.iter().map(|row| layers.primitives.prims[*row]);
+        shuffled.primitives.prims = prims.collect();
+        prop_assert_eq!(shuffled.opaque().key, layers.opaque().key);
+        prop_assert_eq!(shuffled.contents(), layers.contents());
     }
 
     /// The order in which fragments arrive does not matter; sorting twice is sorting.

@@ -176,6 +176,35 @@ proptest! {
         }
     }
 
+    /// A polygon moved by whole sub-pixels: its corners on the grid move by as many, and
+    /// their keys stay. By an even number, as ties go to the even one.
+    #[test]
+    fn translation_by_sub_pixels(
+        corners in prop::collection::vec(
+            ([-80_000_i32..80_000, -80_000..80_000], 0_u32..=1 << 20, -3_i32..3),
+            3..6,
+        ),
+        [dx, dy] in [-20_000_i32..20_000, -20_000..20_000],
+        sub in 4_u32..=8, // no corner leaves the guard
+    ) {
+        let size = Size { width: 100, height: 80 };
+        let grid = f64::from(1_u32 << sub);
+        // In sixteenths of a sub-pixel, and w a power of two: nothing rounds but `snap`.
+        let at = |[x, y]: [i32; 2], z: u32, w: i32| {
+            let [x, y] = [x, y].map(|n| f64::from(n) / (16.0 * grid));
+            [x, y, f64::from(z) / f64::from(1 << 20), 1.0].map(|c| c * f64::from(w).exp2())
+        };
+        let by = |[x, y]: [i32; 2]| [x + 32 * (dx / 16), y + 32 * (dy / 16)];
+        let plain = corners.iter().map(|(p, z, w)| at(*p, *z, *w)).collect();
+        let moved = corners.iter().map(|(p, z, w)| at(by(*p), *z, *w)).collect();
+        let mut must = snapped(size, plain, sub);
+        for corner in &mut must {
+            corner[0] += 2 * (dx / 16);
+            corner[1] += 2 * (dy / 16);
+        }
+        prop_assert_eq!(snapped(size, moved, sub), must);
+    }
+
     /// World and camera scaled by a power of two: the same corners on the grid.
     #[test]
     fn powers_of_two(world in world(1..5), exponent in -20_i32..20) {

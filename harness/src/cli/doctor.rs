@@ -4,19 +4,13 @@ use std::io::Write;
 
 use super::Verdict;
 use crate::calibrate::Grid;
+use crate::mutants::Lab;
 use crate::replay::gpu::{Adapter, Adapters};
-use crate::{corpus, embree, mesh, output};
+use crate::{corpus, embree, findings, mesh, output};
 
-/// What the project found out about drivers the hard way.
-const KNOWN: [(&str, &str); 4] = [
-    (
-        "llvmpipe",
-        "drops side effects of fragments that a later opaque colour write covers",
-    ),
-    (
-        "llvmpipe",
-        "leaves every loop of an invocation after 65,535 iterations in all",
-    ),
+/// What the project found out the hard way, and no kernel can show: the others are
+/// [`findings`].
+const KNOWN: [(&str, &str); 2] = [
     (
         "llvmpipe",
         "answers timestamps around compute passes with moments at which nothing was computed",
@@ -31,18 +25,20 @@ pub fn run() -> anyhow::Result<Verdict> {
     let mut out = output::stdout();
     let adapters = Adapters::open(&[]);
     list(&mut out, &adapters)?;
-    let mut complete = !(adapters.open.is_empty() && adapters.broken.is_empty());
+    let usable = adapters.broken.is_empty();
+    let mut complete = !(adapters.open.is_empty() && usable);
+    let as_found = findings(&mut out, adapters.open)?;
     complete &= embree(&mut out)?;
     complete &= meshes(&mut out)?;
     parts(&mut out)?;
-    let usable = adapters.broken.is_empty();
-    let last = match (complete, usable) {
-        (false, _) => "Something is missing; `./x setup` installs it.",
-        (true, false) => "Not every adapter can be used; a replay goes on with the others.",
-        (true, true) => "All legs can run.",
+    let last = match (complete, usable, as_found) {
+        (false, ..) => "Something is missing; `./x setup` installs it.",
+        (true, false, _) => "Not every adapter can be used; a replay goes on with the others.",
+        (true, true, false) => "A driver is not as it was found.",
+        (true, true, true) => "All legs can run.",
     };
     writeln!(out, "\n{last}")?;
-    Ok(if complete && usable {
+    Ok(if complete && usable && as_found {
         Verdict::Agree
     } else {
         Verdict::Diverge
@@ -77,6 +73,34 @@ fn list(out: &mut impl Write, Adapters { open, broken }: &Adapters) -> anyhow::R
         writeln!(out, "  {broken}")?;
     }
     Ok(())
+}
+
+/// Runs what drivers were found to do wrong, and says whether they still do, and no
+/// others.
+fn findings(out: &mut impl Write, open: Vec<Adapter>) -> anyhow::Result<bool> {
+    let findings = findings::list(&corpus::root())?;
+    if findings.is_empty() || open.is_empty() {
+        return Ok(true);
+    }
+    writeln!(out, "Findings")?;
+    let mut lab = Lab::new(open);
+    let mut all = true;
+    for finding in &findings {
+        let cells = lab.run(&finding.case).map_err(anyhow::Error::msg)?;
+        let (name, known) = (&finding.case.name, &finding.known);
+        let seen = cells.iter().filter(|c| c.outcome.kills());
+        let seen: Vec<&str> = seen.map(|c| c.leg.as_str()).collect();
+        let seen = match seen.is_empty() {
+            true => "on no adapter here".to_owned(),
+            false => format!("seen on {}", seen.join(", ")),
+        };
+        writeln!(out, "  {name}: {known}; {seen}")?;
+        for wrong in finding.judge(&cells) {
+            all = false;
+            writeln!(out, "    {wrong}")?;
+        }
+    }
+    Ok(all)
 }
 
 fn embree(out: &mut impl Write) -> anyhow::Result<bool> {

@@ -11,7 +11,7 @@ use triptych_gpu::raster::Path;
 
 use super::Verdict;
 use super::adapters::{adapters, could_not_run};
-use super::bench::last_bench;
+use super::bench::abuffer::last_bench;
 use super::kernel::{Kernels, all_run, kernels};
 use super::mutants::last_mutants;
 use super::results::Results;

@@ -17,13 +17,14 @@ pub fn compare(spec: &[[Bounded; 3]], other: &[[f32; 3]], width: u32) -> Judgeme
         });
         return judgement;
     }
-    let mut worst = 0.0_f64;
+    let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
     for (pixel, (must, seen)) in (0_u32..).zip(spec.iter().zip(other)) {
         judgement.compared += 3;
         let channel = |c: usize| (must[c], f64::from(seen[c]));
         for (must, seen) in (0..3).map(channel) {
             let error = (seen - must.value).abs();
             if must.bound > 0.0 && error > 0.0 {
+                largest = largest.max(error);
                 worst = worst.max(error / must.bound);
             }
             if !must.admits(seen) {
@@ -37,6 +38,7 @@ pub fn compare(spec: &[[Bounded; 3]], other: &[[f32; 3]], width: u32) -> Judgeme
             }
         }
     }
+    judgement.error = Some(largest);
     judgement.error_over_bound = Some(worst);
     judgement
 }

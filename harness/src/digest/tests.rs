@@ -17,6 +17,7 @@ pub fn row(scene: &str, stage: &str, a: &str, b: &str) -> Row {
         unexplained: 0,
         admitted: 0,
         admitted_budget: None,
+        error: None,
         error_over_bound: None,
         skipped: None,
         cached: false,

@@ -22,6 +22,7 @@ fn row(scene: &str, compared: u64, differ: u64) -> Row {
         unexplained: 0,
         admitted: compared.min(3),
         admitted_budget: Some(0.001),
+        error: Some(0.5),
         error_over_bound: Some(0.25),
         skipped: (compared == 0).then(|| "no \"mesh\"\n".to_owned()),
         cached: true,

@@ -75,6 +75,7 @@ enum PathName {
 enum FaultName {
     HeadsNotCleared,
     CounterNotCleared,
+    ColourWritten,
 }
 
 #[derive(Deserialize)]
@@ -152,6 +153,7 @@ impl Mutant {
         self.fault.map(|fault| match fault {
             FaultName::HeadsNotCleared => Fault::HeadsNotCleared,
             FaultName::CounterNotCleared => Fault::CounterNotCleared,
+            FaultName::ColourWritten => Fault::ColourWritten,
         })
     }
 

@@ -78,6 +78,7 @@ fn judge(vote: &compare::embree::EmbreeVote, edge_budget: Option<f64>) -> Judgem
         causes: vote.causes(),
         admitted: vote.admitted(),
         admitted_budget: edge_budget,
+        error: Some(vote.error_keys),
         error_over_bound: Some(vote.error_over_bound),
         described: vote.first.iter().map(ToString::to_string).collect(),
         note: vote.to_string(),

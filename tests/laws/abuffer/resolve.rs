@@ -203,6 +203,19 @@ proptest! {
         }
     }
 
+    /// Colours and background times a power of two: the picture times it, exactly.
+    #[test]
+    fn powers_of_two(layers in stack(20), behind in behind(), exponent in 0_i32..40) {
+        let factor = f64::from(exponent).exp2();
+        #[expect(clippy::cast_possible_truncation, reason = "a power of two is exact")]
+        let short = factor as f32;
+        let brighter = |[r, g, b, a]: &[f32; 4]| [r * short, g * short, b * short, *a];
+        let scaled: Vec<[f32; 4]> = layers.iter().map(brighter).collect();
+        let seen = pixel(&scaled, behind.map(|c| c * short));
+        let must = pixel(&layers, behind).map(|c| c.value * factor);
+        prop_assert_eq!(seen.map(|c| c.value), must);
+    }
+
     /// What lies at or behind an opaque surface does not show, stored or not.
     #[test]
     fn hidden_layers(layers in layers(0..8)) {

@@ -1,9 +1,11 @@
 //! What is put together from triangles is covered exactly once.
 
 use proptest::prelude::*;
+use triptych_spec::abuffer::{build, opaque, resolve, sort};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
 
+use crate::abuffer::painted;
 use crate::config;
 use crate::grid::{
     self, Triangle, area, corner, depth, flat, fragments, primitives, samples, size, times,
@@ -148,6 +150,26 @@ proptest! {
         sum.iter_mut().for_each(|f| f.prim = 0);
         sum.sort();
         prop_assert_eq!(sum, whole);
+    }
+
+    /// So its parts, of its colour, give the same picture, to the bit, before whatever
+    /// lies behind.
+    #[test]
+    fn split_leaves_the_picture(
+        (size, bits, corners, p) in split_at(),
+        colour in [0_f32..2.0, 0_f32..2.0, 0_f32..2.0, 0_f32..1.0],
+        behind in [0_f32..1.0, 0_f32..1.0, 0_f32..1.0],
+    ) {
+        let level = |[x, y, _]: [i32; 3]| [x, y, 1 << 30];
+        let (corners, p) = (corners.map(level), level(p));
+        let picture = |triangles: &[Triangle]| {
+            let primitives = primitives(size, bits, triangles);
+            let scene = painted(&primitives, &vec![colour; triangles.len()], behind);
+            let opaque = opaque(&scene, &primitives);
+            let lists = build(&scene, &primitives, &opaque, true, u32::MAX);
+            resolve(&scene, &primitives, &opaque, &sort(&lists))
+        };
+        prop_assert_eq!(picture(&parts(corners, p)), picture(&[corners]));
     }
 
     /// With the point's depth rounded down to a key, a part's plane lies less than one

@@ -190,6 +190,7 @@ impl<P: Pairs, E: RayHits> Sweep<'_, P, E> {
         let DepthPair { key, embree, bound } = depth;
         let exact = f64::from(key);
         self.vote.depths += 1;
+        self.vote.error_keys = self.vote.error_keys.max(depth.error());
         self.vote.error_over_bound = self.vote.error_over_bound.max(depth.ratio());
         if depth.is_outside() {
             self.vote.depths_outside += 1;

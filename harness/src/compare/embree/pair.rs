@@ -41,9 +41,14 @@ pub struct DepthPair {
 }
 
 impl DepthPair {
+    /// How far the two are apart, in keys.
+    pub fn error(&self) -> f64 {
+        (self.embree - f64::from(self.key)).abs()
+    }
+
     /// Error over bound; not a number if Embree's t is none.
     pub fn ratio(&self) -> f64 {
-        (self.embree - f64::from(self.key)).abs() / self.bound
+        self.error() / self.bound
     }
 
     /// Whether the depth is outside the bound.

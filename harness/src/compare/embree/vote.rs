@@ -32,6 +32,8 @@ pub struct EmbreeVote {
     pub depths: u64,
     /// Depths outside the bound.
     pub depths_outside: u64,
+    /// Largest error of a depth, in keys.
+    pub error_keys: f64,
     /// Largest error of a depth over its bound.
     pub error_over_bound: f64,
     /// Places in the rays' lists where the bounds tell two neighbours apart.
@@ -114,6 +116,7 @@ impl EmbreeVote {
         self.invented += next.invented;
         self.depths += next.depths;
         self.depths_outside += next.depths_outside;
+        self.error_keys = self.error_keys.max(next.error_keys);
         self.error_over_bound = self.error_over_bound.max(next.error_over_bound);
         self.steps += next.steps;
         self.steps_disordered += next.steps_disordered;

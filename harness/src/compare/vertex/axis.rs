@@ -60,6 +60,7 @@ impl Rule for Judge {
                 figures.error_keys = figures.error_keys.max(error);
             } else {
                 figures.error_subpixels = figures.error_subpixels.max(error);
+                figures.error = figures.error_subpixels;
                 figures.bound_subpixels = figures.bound_subpixels.max(number.bound);
             }
         }

@@ -4,7 +4,9 @@
 //! does not depend on the triangle, so neighbours get the same point, to the bit,
 //! and with it the same corner on the grid. Bounds cannot see whether they did: both
 //! orders are inside. So corners that must be equal to the bit, in triangles that
-//! share an edge, must be equal in the observation, whatever they are.
+//! share an edge, must be equal in the observation, whatever they are. What a corner must
+//! be tells edges apart: nothing is promised of the points of two of them, even where
+//! they meet in a vertex that lies in a plane.
 
 use triptych_spec::scene::Scene;
 

@@ -21,6 +21,8 @@ pub struct TransformReport {
     pub told: Vec<Stray>,
     /// Vertices with a component on which WGSL promises nothing.
     pub unbounded: u64,
+    /// Largest error of a component with a bound, in homogeneous pixels.
+    pub error: f64,
     /// Largest error over its bound.
     pub error_over_bound: f64,
 }
@@ -32,6 +34,7 @@ impl TransformReport {
         let mut judgement = Judgement::new(Class::Interval, "vertices");
         judgement.compared = self.vertices;
         judgement.admitted = self.unbounded;
+        judgement.error = Some(self.error);
         judgement.error_over_bound = Some(self.error_over_bound);
         for stray in &self.told {
             judgement.differs(Cause::Vertex, None, || stray.to_string());
@@ -85,8 +88,10 @@ pub fn compare_transform(scene: &Scene, observed: &[Position<f32>]) -> Transform
         }
         report.unbounded += u64::from(expected.iter().any(|e| e.bound.is_infinite()));
         for (e, o) in expected.iter().zip(observed) {
-            let ratio = (f64::from(*o) - e.value).abs() / e.bound;
-            if ratio.is_finite() {
+            let error = (f64::from(*o) - e.value).abs();
+            let ratio = error / e.bound;
+            if ratio.is_finite() && e.bound.is_finite() {
+                report.error = report.error.max(error);
                 report.error_over_bound = report.error_over_bound.max(ratio);
             }
         }

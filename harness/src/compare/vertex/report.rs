@@ -47,6 +47,9 @@ pub struct Figures {
     pub unbounded: u64,
     /// Corners inside their bounds whose x or y is another sub-pixel than the spec's.
     pub moved: u64,
+    /// Largest error: of any component in homogeneous pixels (`clip`), or of x or y in
+    /// sub-pixels (`snap`).
+    pub error: f64,
     /// Largest error over its bound.
     pub error_over_bound: f64,
     /// Largest error of x or y before rounding, in sub-pixels. Errors count as far as
@@ -128,6 +131,7 @@ impl VertexReport {
         let mut judgement = Judgement::new(Class::Interval, "triangles");
         judgement.compared = self.triangles;
         judgement.admitted = self.admitted;
+        judgement.error = Some(self.figures.error);
         judgement.error_over_bound = Some(self.figures.error_over_bound);
         if let Some(malformed) = &self.malformed {
             judgement.differs(Cause::Vertex, None, || malformed.clone());
@@ -184,6 +188,7 @@ impl Figures {
     pub(super) fn merge(&mut self, other: &Self) {
         self.unbounded += other.unbounded;
         self.moved += other.moved;
+        self.error = self.error.max(other.error);
         self.error_over_bound = self.error_over_bound.max(other.error_over_bound);
         self.error_subpixels = self.error_subpixels.max(other.error_subpixels);
         self.bound_subpixels = self.bound_subpixels.max(other.bound_subpixels);

@@ -16,7 +16,7 @@ use super::clip::outcomes;
 use super::positions::exact;
 use super::*;
 use canaries::{DEFECTS, TRANSFORM, patched};
-use scenes::{BITS, last, random, through_planes};
+use scenes::{BITS, hub_in_plane, last, random, through_planes};
 use whole::whole;
 
 /// Every Vulkan adapter; at least the two software drivers are set up.

@@ -1,6 +1,8 @@
 //! The comparer by itself, without a device.
 
 use super::scenes::{BITS, random};
+use triptych_spec::bound::TINY;
+
 use super::*;
 
 /// The bounds travel along with the numbers and do not change them.
@@ -185,6 +187,62 @@ fn a_missing_or_additional_polygon_is_reported() {
     }
 }
 
+/// A component that is not finite may be anything to the stage that follows; the others
+/// are judged as ever.
+#[test]
+fn a_component_that_is_not_finite_is_free_and_counted() {
+    let (_, scene) = random().swap_remove(1);
+    let run = in_f32(&scene, BITS);
+    let polygons = run.polygons.as_ref().expect("the spec's");
+    let whole = |t: &usize| {
+        let corners = scene.triangles[*t]
+            .vertices
+            .map(|v| run.positions[v as usize]);
+        polygon(polygons, *t) == corners
+    };
+    let visible = (0..scene.triangles.len())
+        .find(whole)
+        .expect("some is not cut");
+    let vertex = scene.triangles[visible].vertices[1] as usize;
+    let before = compare_clip(&scene, &run.positions, polygons);
+    for bad in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+        for axis in 0..4 {
+            let mut positions = run.positions.clone();
+            positions[vertex][axis] = bad;
+            let report = compare_clip(&scene, &positions, polygons);
+            let at = format!("{bad} in component {axis}: {:?}", report.told);
+            assert_eq!(report.differing, 0, "{at}");
+            assert_eq!(report.admitted, before.admitted + 1, "{at}");
+            // Of the other components nothing is free.
+            let mut moved = polygons.clone();
+            moved.corners[polygons.offsets[visible] as usize + 1][(axis + 1) % 4] += 64.0;
+            let report = compare_clip(&scene, &positions, &moved);
+            assert!(
+                report.differing == 1 || report.undecided > before.undecided,
+                "{at}"
+            );
+        }
+    }
+}
+
+/// Edges that meet in a vertex of a plane are cut there, each from its own other end:
+/// nothing promises that the roundings of two of them are alike.
+#[test]
+fn points_of_different_edges_need_not_be_one() {
+    let scene = hub_in_plane();
+    let mut apart = 0;
+    for gpu in devices() {
+        let run = run_with(&gpu, Sources::shipped(false), &scene);
+        let report = Judged::new(&scene, &run).clip;
+        assert!(report.agrees(), "{}: {:?}", gpu.name, report.told);
+        let hub = run.positions[0];
+        let polygons = run.polygons.expect("they were asked for");
+        let near = |c: &&Position<f32>| (c[0] - hub[0]).abs() < 1.0 && c[0] != hub[0];
+        apart += polygons.corners.iter().filter(near).count();
+    }
+    assert!(apart > 0, "no device rounded: the scene shows nothing");
+}
+
 #[test]
 fn where_nothing_is_promised_nothing_is_judged_but_counted() {
     // Beyond the largest f32 in clip space: no number has a finite bound.
@@ -203,6 +261,11 @@ fn where_nothing_is_promised_nothing_is_judged_but_counted() {
         triangles: Vec::new(),
         ..scene
     };
+    let infinite = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+    for position in infinite.map(|v| [v, 1e-40, 0.0, 2.0]) {
+        let bounds = exact(position).map(|n| n.bound);
+        assert_eq!(bounds, [f64::INFINITY, TINY, 0.0, 0.0], "{position:?}");
+    }
     let Judged { clip, snap, .. } = Judged::new(&nothing, &in_f32(&nothing, BITS));
     assert!(!clip.agrees(), "nothing compared is no agreement");
     assert!(!snap.agrees(), "nothing compared is no agreement");

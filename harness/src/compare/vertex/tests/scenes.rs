@@ -159,6 +159,23 @@ pub fn through_planes() -> Scene {
     scene(straight, &vertices, &faces)
 }
 
+/// A fan around a vertex in the near plane, of which two spokes lead far behind it. The
+/// point where either is cut is that vertex, but for the roundings of each.
+pub fn hub_in_plane() -> Scene {
+    let vertices = [
+        [0.3217, 0.2093, 0.0],
+        [-700.3, 40.1, -900.0],
+        [-0.4, 0.6, 0.5],
+        [-500.7, -30.9, -800.0],
+        [0.1, -0.7, 0.4],
+    ];
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4]];
+    let camera = camera(Projection::Orthographic { height: 2.0 }, 1.0);
+    let mut scene = scene(camera, &vertices, &faces);
+    scene.instances = vec![Matrix::IDENTITY];
+    scene
+}
+
 /// The last integer of an axis.
 pub fn last(axis: usize, size: Size) -> i32 {
     match axis {

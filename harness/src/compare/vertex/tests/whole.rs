@@ -33,7 +33,7 @@ pub fn whole(scene: &Scene, bits: u32, observed: &Primitives) -> VertexReport {
     let told = cracks::cracks(scene, &cut, |triangle| {
         let corners = corners(scene.triangles[triangle].vertices);
         let must = clip_triangle(&planes, corners, |_, plain| plain).into_iter();
-        let must = must.map(|corner| corner.map(|n| n.value.to_bits()));
+        let must = must.map(|corner| corner.map(|n| [n.value, n.bound].map(f64::to_bits)));
         must.zip(layout.polygon(triangle).iter().copied()).collect()
     });
     report.add_cracks(told);

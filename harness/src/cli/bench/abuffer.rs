@@ -1,0 +1,191 @@
+//! `triptych bench abuffer`.
+
+use std::io::Write;
+use std::num::NonZeroU32;
+use std::path::{Path as FilePath, PathBuf};
+
+use anyhow::Context;
+
+use super::super::Verdict;
+use super::super::adapters::{adapters, could_not_run};
+use super::super::kernel::{Kernels, kernels};
+use super::super::replay::PathName;
+use super::super::results::Results;
+use super::super::run_info::today;
+use crate::bench::{Bench, Options, Progress, SCENES, csv, markdown, run as measure, svg, table};
+use crate::corpus;
+use crate::mesh::Intake;
+use crate::output::{complain, stdout};
+use crate::text::clean;
+use triptych_gpu::raster::Path;
+
+/// Among the results, what the report reads.
+pub const FILE: &str = "abuffer.json";
+
+/// Bytes that it may have; a row has about a thousand.
+const FILE_MAX: u64 = 1 << 26;
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  \
+    triptych bench abuffer                    three real meshes, every adapter and path\n  \
+    triptych bench abuffer bunny --layers 1,2,4 --runs 31\n  \
+    triptych bench abuffer --adapter nvidia --path compute --out results\n\n\
+    Every picture is compared with the spec's before and after it is timed. Exit code 1: one \
+    is outside the spec's bound. 2: nothing could be measured.")]
+pub struct Args {
+    /// Parts of scene names, scene files, or meshes; three real meshes without one
+    #[arg(value_name = "PATTERN")]
+    patterns: Vec<String>,
+    /// Patterns are whole names
+    #[arg(long)]
+    exact: bool,
+    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Vec<String>,
+    /// Only this raster path (repeatable)
+    #[arg(long)]
+    path: Vec<PathName>,
+    /// Rounds that count, after two to warm up
+    #[arg(long, value_name = "N", default_value = "15")]
+    runs: NonZeroU32,
+    /// Numbers of nearest layers beside all [default: 1, 2, 4, …]
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    layers: Vec<NonZeroU32>,
+    /// The user's kernels of a stage in place of ours (repeatable); then all are checked
+    #[arg(long, value_name = "STAGE=FILE")]
+    kernel: Vec<String>,
+    /// Write the results as JSON here, too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write the rows as comma-separated values here, too
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write the front of time against error here, too
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Where all of them and a page to be committed go [default: reports/out/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let foreign = match kernels(&args.kernel)? {
+        Kernels::Run(foreign) => foreign,
+        Kernels::Print(text) => {
+            stdout().write_all(text.as_bytes())?;
+            return Ok(Verdict::Agree);
+        }
+    };
+    let entries = corpus::list(&corpus::root())?;
+    let selected = match args.patterns.is_empty() {
+        true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
+        false => corpus::select(&entries, &args.patterns, args.exact)?,
+    };
+    let mut found = adapters(&args.adapter)?;
+    if found.open.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    found.open.iter_mut().for_each(|a| a.use_foreign(&foreign));
+    let options = args.options();
+    let outcome = measure(&selected, &found.open, &options, &Progress::new());
+    let outcome = outcome.map_err(anyhow::Error::msg)?;
+    let mut out = stdout();
+    for line in table::lines(&outcome.bench) {
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    for remark in &outcome.bench.remarks {
+        writeln!(out, "{}", clean(remark))?;
+    }
+    args.write(&outcome.bench)?;
+    outcome.wrong.iter().for_each(complain);
+    if !outcome.wrong.is_empty() {
+        return Ok(Verdict::Diverge);
+    }
+    let gpu = |row: &crate::bench::Row| row.leg != "spec";
+    anyhow::ensure!(
+        outcome.bench.rows.iter().any(gpu),
+        "nothing was measured on an adapter; see what was not, and why"
+    );
+    Ok(Verdict::Agree)
+}
+
+impl Args {
+    fn options(&self) -> Options {
+        let path = |path: &PathName| path.path();
+        Options {
+            paths: match self.path.is_empty() {
+                true => Path::ALL.to_vec(),
+                false => self.path.iter().map(path).collect(),
+            },
+            runs: self.runs.get(),
+            layers: match self.layers.is_empty() {
+                true => None,
+                false => Some(self.layers.iter().map(|n| n.get()).collect()),
+            },
+            date: today(),
+        }
+    }
+
+    /// Writes what was measured, in all forms. Results that are wrong are not among them.
+    fn write(&self, bench: &Bench) -> anyhow::Result<()> {
+        let folder = self.out.clone().unwrap_or_else(|| folder(&reports()));
+        let json = serde_json::to_string_pretty(bench)? + "\n";
+        let (csv, svg) = (csv::csv(bench), svg::file(bench));
+        let stem = bench.stem();
+        let files = [
+            (folder.join(FILE), &json),
+            (folder.join("abuffer.csv"), &csv),
+            (folder.join("abuffer.svg"), &svg),
+            (folder.join(format!("{stem}.csv")), &csv),
+            (folder.join(format!("{stem}.svg")), &svg),
+            (folder.join(format!("{stem}.md")), &markdown::page(bench)),
+        ];
+        let extra = [(&self.json, &json), (&self.csv, &csv), (&self.svg, &svg)];
+        let extra = extra
+            .into_iter()
+            .filter_map(|(to, text)| Some((to.clone()?, text)));
+        for (file, text) in files.into_iter().chain(extra) {
+            write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
+        }
+        writeln!(stdout(), "Results: {}", folder.display())?;
+        Ok(())
+    }
+}
+
+fn write(file: &FilePath, text: &str) -> std::io::Result<()> {
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    std::fs::write(file, text)
+}
+
+fn reports() -> PathBuf {
+    corpus::root().with_file_name("reports").join("out")
+}
+
+/// Where the results of a run go, in the folder of the report.
+fn folder(out: &FilePath) -> PathBuf {
+    out.join("bench")
+}
+
+/// The last measurement, for the report; a file that cannot be read is worth a remark.
+pub(in crate::cli) fn last_bench(out: &FilePath, results: &mut Results) -> anyhow::Result<Option<Bench>> {
+    let file = folder(out).join(FILE);
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let text = Intake::from_disk().read(&file, FILE_MAX);
+    let text = text.map_err(|error| error.to_string());
+    let bench = text.and_then(|text| {
+        let parsed = serde_json::from_slice(&text);
+        parsed.map_err(|error| format!("{}: {error}", file.display()))
+    });
+    match bench {
+        Ok(bench) => Ok(Some(bench)),
+        Err(error) => {
+            results.reporter.remark(&error)?;
+            Ok(None)
+        }
+    }
+}

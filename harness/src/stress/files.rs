@@ -1,0 +1,199 @@
+//! What a run writes: one CSV row for each step, leg and stage, and a page of Markdown.
+
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::judge::Wrong;
+use super::measure::{Bound, Measured, bounded};
+use super::sweeps::Sweep;
+use super::table::{ABOVE, Table};
+use crate::report::RunInfo;
+use crate::row::Row;
+
+/// Files that a run wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// For people.
+    pub markdown: PathBuf,
+    /// For programs.
+    pub csv: PathBuf,
+}
+
+/// Writes both into a folder, named by date and machine.
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub fn write(
+    folder: &Path,
+    run: &RunInfo,
+    sweeps: &[Sweep],
+    all: &[Measured],
+    wrong: &[Wrong],
+) -> io::Result<Written> {
+    std::fs::create_dir_all(folder)?;
+    let words = run.machine.iter().map(|(_, value)| value.replace(' ', "-"));
+    let machine = words.collect::<Vec<_>>().join("-");
+    let stem = format!("stress-{}-{machine}", run.date);
+    let written = Written {
+        markdown: folder.join(format!("{stem}.md")),
+        csv: folder.join(format!("{stem}.csv")),
+    };
+    std::fs::write(&written.csv, csv(all))?;
+    std::fs::write(&written.markdown, markdown(run, sweeps, all, wrong))?;
+    Ok(written)
+}
+
+/// All rows.
+fn csv(all: &[Measured]) -> String {
+    let mut text = "sweep,step,value,stage,a,b,class,unit,compared,differ,unexplained,error,\
+                    error_over_bound,admitted,admitted_share,admitted_budget,vertices,\
+                    no_bound,subnormal,overflow,skipped\n"
+        .to_owned();
+    for m in all {
+        for row in &m.rows {
+            let n = m.numbers;
+            let class = serde_json::to_string(&row.class).unwrap_or_default();
+            let cells = [
+                m.sweep.to_owned(),
+                m.step.clone(),
+                m.value.to_string(),
+                row.stage.clone(),
+                row.a.clone(),
+                row.b.clone(),
+                class.trim_matches('"').to_owned(),
+                row.unit.clone(),
+                row.compared.to_string(),
+                row.differ.to_string(),
+                row.unexplained.to_string(),
+                optional(row.error),
+                optional(row.error_over_bound),
+                row.admitted.to_string(),
+                row.admitted_share().to_string(),
+                optional(row.admitted_budget),
+                n.vertices.to_string(),
+                n.unbounded.to_string(),
+                n.subnormal.to_string(),
+                n.overflow.to_string(),
+                row.skipped.clone().unwrap_or_default(),
+            ];
+            let cells = cells.map(|cell| quoted(&cell));
+            text += &(cells.join(",") + "\n");
+        }
+    }
+    text
+}
+
+fn optional(number: Option<f64>) -> String {
+    number.map_or_else(String::new, |n| format!("{n:e}"))
+}
+
+/// A cell of a CSV file (RFC 4180).
+fn quoted(cell: &str) -> String {
+    match cell.contains([',', '"', '\n', '\r']) {
+        false => cell.to_owned(),
+        true => format!("\"{}\"", cell.replace('"', "\"\"")),
+    }
+}
+
+fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
+    let mut text = format!("# Stability, {}\n\n`{}`\n\n", run.date, run.command);
+    let facts = run.machine.iter().chain(&run.versions);
+    for (name, value) in facts {
+        line(&mut text, format_args!("- {name}: {value}"));
+    }
+    for adapter in &run.adapters {
+        let facts = adapter.facts.iter().map(|(n, v)| format!("{n} {v}"));
+        let facts = facts.collect::<Vec<_>>().join(", ");
+        line(&mut text, format_args!("- {}: {facts}", adapter.name));
+    }
+    let compared: u64 = all.iter().map(Measured::compared).sum();
+    let (steps, seconds) = (all.len(), run.seconds);
+    line(
+        &mut text,
+        format_args!(
+            "\n{steps} steps, {compared} items compared in {seconds:.0} s. {}",
+            match wrong.len() {
+                0 =>
+                    "Exact stages agree bit for bit at every step, and no error exceeds its bound."
+                        .to_owned(),
+                n => format!("{n} things do not hold:"),
+            }
+        ),
+    );
+    for wrong in wrong {
+        line(&mut text, format_args!("- {wrong}"));
+    }
+    text += &largest(all);
+    for sweep in sweeps {
+        text += &section(sweep, all);
+    }
+    text
+}
+
+/// The largest error over bound of each stage on each adapter, and where.
+fn largest(all: &[Measured]) -> String {
+    let mut text =
+        "\n## Largest error over bound\n\n| stage | leg | error over bound | at | error |\n\
+                    |---|---|---|---|---|\n"
+            .to_owned();
+    for stage in bounded() {
+        let rows = |m: &'_ Measured| m.rows.iter().filter(|r| stage.is_of(r)).count() > 0;
+        let mut legs: Vec<&str> = all
+            .iter()
+            .filter(|m| rows(m))
+            .flat_map(|m| &m.rows)
+            .filter(|r| stage.is_of(r))
+            .map(|r| r.b.as_str())
+            .collect();
+        legs.sort_unstable();
+        legs.dedup();
+        for leg in legs {
+            text += &largest_of(all, stage, leg);
+        }
+    }
+    text
+}
+
+fn largest_of(all: &[Measured], stage: Bound, leg: &str) -> String {
+    let of = |m: &'_ Measured| {
+        m.rows
+            .iter()
+            .find(|r| stage.is_of(r) && r.b == leg)
+            .cloned()
+    };
+    let found = all.iter().filter_map(|m| Some((m, of(m)?)));
+    let found = found.filter_map(|(m, row)| Some((row.error_over_bound?, m, row)));
+    let Some((ratio, m, row)) = found.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
+        return String::new();
+    };
+    let Row { error, .. } = row;
+    format!(
+        "| {} | {leg} | {ratio:.4} | {} {} | {} |\n",
+        stage.name(),
+        m.sweep,
+        m.step,
+        error.map_or_else(String::new, |e| format!("{e:.3e}")),
+    )
+}
+
+/// A sweep's table.
+fn section(sweep: &Sweep, all: &[Measured]) -> String {
+    let mut text = format!("\n## {}: {}\n\n{ABOVE}.\n\n", sweep.name, sweep.axis);
+    let names = Table::names();
+    line(&mut text, format_args!("| {} |", names.join(" | ")));
+    line(&mut text, format_args!("|{}", "---|".repeat(names.len())));
+    let mut table = Table::default();
+    for m in all.iter().filter(|m| m.sweep == sweep.name) {
+        let cells = table.cells(m).join(" | ");
+        line(&mut text, format_args!("| {cells} |"));
+    }
+    for note in table.notes() {
+        line(&mut text, format_args!("\n{note}"));
+    }
+    text
+}
+
+fn line(text: &mut String, words: std::fmt::Arguments<'_>) {
+    writeln!(text, "{words}").expect("memory takes all");
+}

@@ -1,0 +1,104 @@
+//! What must hold of every step, and of all of them.
+
+use std::fmt;
+
+use super::measure::{Bound, Measured, bounded};
+use crate::row::{Row, Verdict};
+
+/// A bound whose largest error is below this share of it says nothing.
+pub const USEFUL: f64 = 1e-3;
+
+/// What does not hold, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wrong {
+    /// Name of the sweep, or of all.
+    pub sweep: String,
+    /// The step; empty if it is of all steps.
+    pub step: String,
+    /// The stage.
+    pub stage: String,
+    /// Adapter and path, or Embree.
+    pub leg: String,
+    /// What is wrong, in words.
+    pub what: String,
+}
+
+impl fmt::Display for Wrong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            sweep,
+            step,
+            stage,
+            leg,
+            what,
+        } = self;
+        let space = if step.is_empty() { "" } else { " " };
+        write!(f, "{sweep}{space}{step}, stage {stage}, {leg}: {what}")
+    }
+}
+
+/// What does not hold of a step. `legs` are all that must have a row, were it to refuse.
+pub fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
+    let wrong = |stage: &str, leg: &str, what: String| Wrong {
+        sweep: measured.sweep.to_owned(),
+        step: measured.step.clone(),
+        stage: stage.to_owned(),
+        leg: leg.to_owned(),
+        what,
+    };
+    let rows = measured.rows.iter();
+    let mut all: Vec<Wrong> = rows
+        .filter_map(|row| Some(wrong(&row.stage, &row.b, of_row(row)?)))
+        .collect();
+    let silent = legs
+        .iter()
+        .filter(|leg| !measured.rows.iter().any(|row| row.b == **leg));
+    all.extend(silent.map(|leg| wrong("all", leg, "not a word of it".to_owned())));
+    all
+}
+
+/// What is wrong with a row.
+fn of_row(row: &Row) -> Option<String> {
+    let Row {
+        differ,
+        compared,
+        unit,
+        note,
+        ..
+    } = row;
+    let ratio = row.error_over_bound.unwrap_or(0.0);
+    if *differ > 0 || row.unexplained > 0 {
+        return Some(format!("{differ} of {compared} {unit} differ; {note}"));
+    }
+    if ratio > 1.0 || ratio.is_nan() {
+        return Some(format!("error over bound is {ratio}, must be at most 1"));
+    }
+    let share = row.admitted_share();
+    match row.admitted_budget {
+        Some(budget) if share > budget => {
+            Some(format!("share unjudged is {share}, at most {budget}"))
+        }
+        _ if row.verdict() == Verdict::Diverge => {
+            Some("nothing was compared, and no reason is stated".to_owned())
+        }
+        _ => None,
+    }
+}
+
+/// Stages whose bound is nowhere of use, over all steps.
+pub fn useless(all: &[Measured]) -> Vec<Wrong> {
+    let largest = |stage: Bound| {
+        let steps = all.iter().filter_map(|m| m.worst(stage));
+        steps.map(|(ratio, _)| ratio).fold(0.0, f64::max)
+    };
+    let found = bounded().map(|stage| (stage, largest(stage)));
+    let found = found.into_iter().filter(|(_, ratio)| *ratio < USEFUL);
+    let wrong = |(stage, ratio): (Bound, f64)| Wrong {
+        sweep: "all sweeps".to_owned(),
+        step: String::new(),
+        stage: stage.name().to_owned(),
+        leg: "all legs".to_owned(),
+        what: format!("error over bound is at most {ratio}, must reach {USEFUL} somewhere"),
+    };
+    found.map(wrong).collect()
+}

@@ -1,0 +1,148 @@
+//! A sweep as a table: a line for each step, and what its notes stand for.
+
+use std::collections::BTreeSet;
+
+use super::measure::{Bound, Measured, bounded};
+use crate::text::{clean, compact, share};
+
+/// Columns, and how wide they are on a terminal.
+const COLUMNS: [(&str, usize); 13] = [
+    ("step", 8),
+    ("compared", 9),
+    ("transform", 10),
+    ("clip", 8),
+    ("snap", 8),
+    ("resolve", 8),
+    ("embree", 8),
+    ("worst", 10),
+    ("edge", 9),
+    ("unjudged", 9),
+    ("no bound", 9),
+    ("subnormal", 10),
+    ("overflow", 9),
+];
+
+/// Above the numbers: whose they are.
+pub const ABOVE: &str = "error over bound, the largest of all legs, by stage; share of Embree's pairs in class edge; \
+     largest share unjudged; vertices";
+
+/// Lines of one sweep, as they come.
+#[derive(Default)]
+pub struct Table {
+    /// Why something was not compared: stage and reason, and the legs.
+    notes: Vec<(String, BTreeSet<String>)>,
+}
+
+impl Table {
+    /// Names of the columns.
+    pub fn names() -> Vec<&'static str> {
+        let names = COLUMNS.iter().map(|(name, _)| *name);
+        names.chain(["skipped"]).collect()
+    }
+
+    /// The cells of a step.
+    pub fn cells(&mut self, m: &Measured) -> Vec<String> {
+        let mut cells = vec![m.step.clone(), compact(m.compared())];
+        let worst = bounded().map(|stage| (stage, m.worst(stage).map(|(ratio, _)| ratio)));
+        cells.extend(worst.iter().map(|(_, ratio)| ratio_of(*ratio)));
+        let largest = worst
+            .iter()
+            .filter_map(|(stage, ratio)| Some((*stage, (*ratio)?)));
+        let largest = largest.reduce(|a, b| if b.1 > a.1 { b } else { a });
+        let name = |(stage, _): (Bound, f64)| stage.name().to_owned();
+        cells.push(largest.map_or_else(dash, name));
+        cells.push(m.edge().map_or_else(dash, share));
+        cells.push(share(m.unjudged()));
+        let n = m.numbers;
+        cells.extend([n.unbounded, n.subnormal, n.overflow].map(|count| {
+            let part = count as f64 / n.vertices.max(1) as f64;
+            share(part)
+        }));
+        cells.push(self.marks(m));
+        cells
+    }
+
+    /// Marks of what a step skipped, each explained by [`Self::notes`].
+    fn marks(&mut self, m: &Measured) -> String {
+        let mut marks: Vec<usize> = Vec::new();
+        for (row, reason) in m.skipped() {
+            let note = clean(&format!("{}: {reason}", row.stage)).into_owned();
+            let known = self.notes.iter().position(|(n, _)| *n == note);
+            let number = known.unwrap_or_else(|| {
+                self.notes.push((note, BTreeSet::new()));
+                self.notes.len() - 1
+            });
+            self.notes[number].1.insert(row.b.clone());
+            marks.push(number + 1);
+        }
+        marks.sort_unstable();
+        marks.dedup();
+        runs(&marks)
+    }
+
+    /// What the marks stand for.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        let numbered = (1..).zip(&self.notes);
+        numbered.map(|(number, (note, legs))| {
+            let legs: Vec<&str> = legs.iter().map(String::as_str).collect();
+            format!("[{number}] {note} ({})", legs.join(", "))
+        })
+    }
+}
+
+/// A line on a terminal.
+pub fn line(cells: &[impl AsRef<str>]) -> String {
+    let widths = COLUMNS.iter().map(|(_, width)| *width).chain([0]);
+    let cell = |(cell, width): (&_, usize)| match width {
+        0 => format!("  {}", AsRef::<str>::as_ref(cell)),
+        _ => format!("{:>width$}", AsRef::<str>::as_ref(cell)),
+    };
+    let line: String = cells.iter().zip(widths).map(cell).collect();
+    line.trim_end().to_owned()
+}
+
+/// `[1-3][7]`: numbers in rising order, neighbours as a range.
+fn runs(numbers: &[usize]) -> String {
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for &number in numbers {
+        match runs.last_mut() {
+            Some([_, end]) if *end + 1 == number => *end = number,
+            _ => runs.push([number, number]),
+        }
+    }
+    let run = |[start, end]: &[usize; 2]| match start == end {
+        true => format!("[{start}]"),
+        false => format!("[{start}-{end}]"),
+    };
+    runs.iter().map(run).collect()
+}
+
+fn dash() -> String {
+    "–".to_owned()
+}
+
+/// Error over bound with four digits after the point; what is there but would print as
+/// nothing in its own way.
+fn ratio_of(ratio: Option<f64>) -> String {
+    match ratio {
+        None => dash(),
+        Some(0.0) => "0".to_owned(),
+        Some(ratio) if ratio < 5e-5 => format!("{ratio:.0e}"),
+        Some(ratio) => format!("{ratio:.4}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ratio_of, runs};
+
+    #[test]
+    fn marks_and_ratios_are_short() {
+        assert_eq!(runs(&[1, 2, 3, 7]), "[1-3][7]");
+        assert_eq!(runs(&[]), "");
+        assert_eq!(ratio_of(None), "–");
+        assert_eq!(ratio_of(Some(0.0)), "0");
+        assert_eq!(ratio_of(Some(0.25)), "0.2500");
+        assert_eq!(ratio_of(Some(3e-6)), "3e-6", "there, but small");
+    }
+}

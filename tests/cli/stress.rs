@@ -1,0 +1,73 @@
+//! `triptych bench --stress`.
+
+use std::fs;
+
+use super::Place;
+use super::results::{count, json};
+
+#[test]
+fn a_sweep_is_printed_and_written() {
+    let place = Place::new("stress");
+    let arguments = ["bench", "--stress", "offset", "--adapter", "swiftshader"];
+    let files = ["--json", "o.jsonl", "--csv", "o.csv", "--out", "out"];
+    let ran = place.run(&[&arguments[..], &files].concat()).expect(0);
+    assert_eq!(ran.stderr, "");
+    let lines = ran.stdout.lines().map(str::trim_start);
+    let steps = lines.filter(|line| line.starts_with("2^")).count();
+    assert_eq!(steps, 13, "a line for each step:\n{}", ran.stdout);
+    // What a leg refuses has its reason.
+    assert!(ran.stdout.contains("(gpu@SwiftShader"), "{}", ran.stdout);
+
+    let mut rows = json(&place.root.join("o.jsonl"));
+    let summary = rows.pop().expect("a summary");
+    assert_eq!(count(&summary, "diverging"), 0);
+    assert_eq!(count(&summary, "scenes"), 13);
+    let bounded = rows.iter().filter(|r| r["error_over_bound"].is_number());
+    assert!(bounded.clone().all(|r| r["error"].is_number()), "both");
+    assert!(
+        bounded.count() >= 13 * 4,
+        "transform, clip, resolve, Embree"
+    );
+
+    let table = fs::read_to_string(place.root.join("o.csv")).expect("a table");
+    assert_eq!(
+        table.lines().count(),
+        rows.len() + 1,
+        "a line each, and names"
+    );
+    let names = table.lines().next().expect("names");
+    for line in table.lines().filter(|line| !line.contains('"')) {
+        assert_eq!(line.split(',').count(), names.split(',').count(), "{line}");
+    }
+    let page = ran.stdout.lines().last().expect("where the page lies");
+    let page = page.strip_prefix("Report: ").expect("where the page lies");
+    let page = fs::read_to_string(place.root.join(page)).expect("a page");
+    for part in [
+        "# Stability, ",
+        "| 2^24 |",
+        "SwiftShader: device ",
+        "13 steps, ",
+    ] {
+        assert!(page.contains(part), "{page} lacks {part}");
+    }
+    // Every step can be replayed by itself.
+    let scene = "out/scenes/offset/2^4/scene.toml";
+    let replay = ["replay", scene, "--leg", "embree", "--no-cache"];
+    place.run(&replay).expect(0);
+    let again = rows[0]["again"].as_str().expect("a command");
+    assert!(again.contains("scenes/offset/2^0/scene.toml"), "{again}");
+}
+
+#[test]
+fn what_is_no_sweep_is_told() {
+    let place = Place::new("stress-none");
+    let ran = place.run(&["bench", "--stress", "no-such"]).expect(2);
+    assert_eq!(
+        ran.stderr,
+        "triptych: no-such: no sweep is called so; there are: scale, offset, sliver, depth, \
+         edge-on, layers\n"
+    );
+    assert_eq!(ran.stdout, "");
+    let help = place.run(&["bench", "--help"]).expect(0);
+    assert!(help.stdout.contains("Examples:"), "{}", help.stdout);
+}
