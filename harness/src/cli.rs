@@ -2,8 +2,8 @@
 //! run.
 
 mod adapters;
-mod bench;
 mod add;
+mod bench;
 mod bundle;
 mod doctor;
 mod kernel;

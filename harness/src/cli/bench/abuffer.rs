@@ -170,7 +170,10 @@ fn folder(out: &FilePath) -> PathBuf {
 }
 
 /// The last measurement, for the report; a file that cannot be read is worth a remark.
-pub(in crate::cli) fn last_bench(out: &FilePath, results: &mut Results) -> anyhow::Result<Option<Bench>> {
+pub(in crate::cli) fn last_bench(
+    out: &FilePath,
+    results: &mut Results,
+) -> anyhow::Result<Option<Bench>> {
     let file = folder(out).join(FILE);
     if !file.is_file() {
         return Ok(None);

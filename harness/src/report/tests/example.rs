@@ -66,6 +66,7 @@ pub fn input() -> ReportInput {
         },
         scenes: vec![bad, good],
         mutants: vec![crate::report::mutants::tests::example()],
+        bench: Some(crate::report::bench::tests::example()),
     }
 }
 
