@@ -138,9 +138,7 @@ impl Browser {
         self.size([width, height]);
         let url = format!("file://{}", page.display());
         self.call("Page.navigate", json!({ "url": url }));
-        self.wait(&format!(
-            "location.href.startsWith('file:') && document.readyState === 'complete'"
-        ));
+        self.wait("location.href.startsWith('file:') && document.readyState === 'complete'");
     }
 
     /// Sets the window's size.

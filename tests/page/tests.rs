@@ -83,10 +83,10 @@ fn picture(browser: &mut Browser, place: &Place) {
     browser.click(&format!("{SCENE} .in"));
     browser.click(&format!("{SCENE} .in"));
     let factor = browser.value("document.querySelector('.factor').value");
-    assert_eq!(factor, "4×");
+    assert_eq!(factor, "4×", "enlarged twice");
     let crisp =
         browser.value("getComputedStyle(document.querySelector('.canvas img')).imageRendering");
-    assert_eq!(crisp, "pixelated");
+    assert_eq!(crisp, "pixelated", "pixels have edges");
     let [left, top, width, height] = browser.area(&format!("{SCENE} .canvas"));
     let at = [left + width * 48.5 / 65.0, top + height * 24.5 / 33.0];
     browser.mouse("mousePressed", at);

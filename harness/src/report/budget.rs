@@ -121,7 +121,7 @@ mod tests {
         let sheet = |leg: &str| Sheet {
             leg: leg.into(),
             // Equal bytes would be in the page once.
-            data: vec![leg.len() as u8; bytes],
+            data: vec![leg.as_bytes()[0]; bytes],
             ..Sheet::default()
         };
         let mut image = picture::linear(size, &[[0.5; 3]]);
