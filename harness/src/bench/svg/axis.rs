@@ -108,7 +108,7 @@ impl Vertical {
         };
         let tens = (0..20).map(|i| self.low + step * f64::from(i));
         let mut ticks: Vec<(Option<f64>, String)> = tens
-            .take_while(|tick| *tick <= self.high)
+            .take_while(|tick| *tick <= self.high && *tick < ROUNDING)
             .map(|tick| (Some(tick), format!("{tick}")))
             .collect();
         ticks.push((None, "exact*".to_owned()));
