@@ -57,8 +57,7 @@ pub struct Row {
     /// Largest share of `admitted` that passes.
     pub admitted_budget: Option<f64>,
     /// Largest error, where there is a bound: in homogeneous pixels for `transform` and
-    /// `clip`, in sub-pixels for `snap`, in keys for Embree, in linear colour for
-    /// `resolve`.
+    /// `clip`, in keys for `snap` and Embree, in linear colour for `resolve`.
     #[serde(default)]
     pub error: Option<f64>,
     /// Largest error over bound, where the class is an interval.

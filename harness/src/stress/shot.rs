@@ -120,9 +120,9 @@ impl Shot {
         for (number, corners) in self.triangles.iter().enumerate() {
             let surface = number % self.opacities.len();
             for [x, y, z] in corners {
-                write!(text, "v {x:e} {y:e} {z:e}\n").expect("memory takes all");
+                writeln!(text, "v {x:e} {y:e} {z:e}").expect("memory takes all");
             }
-            write!(text, "usemtl s{surface}\nf -3 -2 -1\n").expect("memory takes all");
+            writeln!(text, "usemtl s{surface}\nf -3 -2 -1").expect("memory takes all");
         }
         text
     }

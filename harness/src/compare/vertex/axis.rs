@@ -58,9 +58,9 @@ impl Rule for Judge {
             figures.error_over_bound = figures.error_over_bound.max(error / number.bound);
             if axis == 2 {
                 figures.error_keys = figures.error_keys.max(error);
+                figures.error = figures.error_keys;
             } else {
                 figures.error_subpixels = figures.error_subpixels.max(error);
-                figures.error = figures.error_subpixels;
                 figures.bound_subpixels = figures.bound_subpixels.max(number.bound);
             }
         }

@@ -47,8 +47,8 @@ pub struct Figures {
     pub unbounded: u64,
     /// Corners inside their bounds whose x or y is another sub-pixel than the spec's.
     pub moved: u64,
-    /// Largest error: of any component in homogeneous pixels (`clip`), or of x or y in
-    /// sub-pixels (`snap`).
+    /// Largest error: of any component in homogeneous pixels (`clip`), or of z in keys
+    /// (`snap`, where rounding seldom lets x or y prove any).
     pub error: f64,
     /// Largest error over its bound.
     pub error_over_bound: f64,
