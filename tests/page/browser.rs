@@ -136,6 +136,9 @@ impl Browser {
     /// Opens a file in a window of this size.
     pub fn open(&mut self, page: &Path, [width, height]: [u32; 2]) {
         self.size([width, height]);
+        // What scrolls smoothly is elsewhere by the time that it is clicked.
+        let still = json!({"name": "prefers-reduced-motion", "value": "reduce"});
+        self.call("Emulation.setEmulatedMedia", json!({ "features": [still] }));
         let url = format!("file://{}", page.display());
         self.call("Page.navigate", json!({ "url": url }));
         self.wait("location.href.startsWith('file:') && document.readyState === 'complete'");

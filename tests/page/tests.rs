@@ -24,6 +24,11 @@ const PHONE: [u32; 2] = [390, 844];
 /// The scene that diverges, which is the first.
 const SCENE: &str = "details.scene";
 
+/// Whether the lists of a pixel are shown. They are unpacked first, which takes a while.
+fn lists_of([x, y]: [i64; 2]) -> String {
+    format!("document.querySelector('.threes caption')?.innerText.includes('column {x}, row {y}:')")
+}
+
 /// The pixel that the cursor is on.
 fn cursor(browser: &mut Browser) -> [i64; 2] {
     ["column", "row"].map(|axis| {
@@ -70,15 +75,13 @@ fn picture(browser: &mut Browser, place: &Place) {
     for (at, pixel) in [([0.5, 0.5], [32, 16]), ([0.25, 0.75], [16, 24])] {
         browser.click_at(&format!("{SCENE} .shot"), at);
         assert_eq!(cursor(browser), pixel, "by its own picture");
+        // Lists that come into sight move the page.
+        browser.wait(&lists_of(pixel));
         browser.click_at(&format!("{SCENE} .canvas"), [1.0 - at[0], at[1]]);
-        assert_eq!(
-            cursor(browser),
-            [64 - pixel[0], pixel[1]],
-            "by the large one"
-        );
+        let mirrored = [64 - pixel[0], pixel[1]];
+        assert_eq!(cursor(browser), mirrored, "by the large one");
+        browser.wait(&lists_of(mirrored));
     }
-    browser
-        .wait("document.querySelector('.threes caption').innerText.includes('column 48, row 24')");
     // Enlarged, the same place of the picture is the same pixel.
     browser.click(&format!("{SCENE} .in"));
     browser.click(&format!("{SCENE} .in"));
@@ -111,18 +114,14 @@ fn keys(browser: &mut Browser, place: &Place) {
     assert_eq!(browser.value(open), json!(false), "not asked for");
     browser.key("Enter");
     browser.wait(open);
-    let caption = |at: [i64; 2]| {
-        let words = format!("column {}, row {}:", at[0], at[1]);
-        format!("document.querySelector('.threes caption').innerText.includes('{words}')")
-    };
-    browser.wait(&caption([start[0] + 2, start[1] + 1]));
+    browser.wait(&lists_of([start[0] + 2, start[1] + 1]));
     browser.key("ArrowLeft");
-    browser.wait(&caption([start[0] + 1, start[1] + 1]));
+    browser.wait(&lists_of([start[0] + 1, start[1] + 1]));
     // The worst pixels go on from where the cursor is: they are alike, hence by rows.
     browser.key("w");
-    browser.wait(&caption([start[0] + 2, start[1] + 1]));
+    browser.wait(&lists_of([start[0] + 2, start[1] + 1]));
     browser.key("W");
-    browser.wait(&caption([start[0] + 1, start[1] + 1]));
+    browser.wait(&lists_of([start[0] + 1, start[1] + 1]));
     browser.key("?");
     browser.wait("document.getElementById('keys').open");
     browser.key("Escape");
