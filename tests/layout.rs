@@ -271,7 +271,7 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 12,
+        seen, 18,
         "three functions in three programs of two forms each"
     );
 }

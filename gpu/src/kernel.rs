@@ -13,7 +13,7 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::pass::Uses;
 use crate::wgsl::{Sources, WgslError};
-use module::{Checks, Module};
+use module::{Checks, Module, bindings, uses};
 
 pub use foreign::Foreign;
 pub use skeleton::skeleton;
@@ -248,14 +248,6 @@ impl Kernels {
     }
 }
 
-impl Module {
-    /// Whether an entry point returns anything.
-    fn returns(&self, entry: &str) -> bool {
-        let mut entries = self.program.module.entry_points.iter();
-        entries.any(|e| e.name == entry && e.function.result.is_some())
-    }
-}
-
 impl Kernel {
     /// Binds the variables that the kernel uses to the buffers of those names.
     ///
@@ -283,28 +275,4 @@ impl Kernel {
             entries: &entries,
         })
     }
-}
-
-/// What entry points bind, by the names that our file gives the numbers: the host knows
-/// no others.
-fn bindings<const N: usize>(ours: &Module, entries: [(&Module, &str); N]) -> Vec<(String, u32)> {
-    let names = ours.program.names();
-    let used = |(module, entry): &(&Module, &str)| module.program.bindings(entry);
-    let numbers = entries.iter().filter_map(used).flatten().map(|b| b.1);
-    let named = |number| Some((names.get(&number)?.clone(), number));
-    let mut all: Vec<(String, u32)> = numbers.filter_map(named).collect();
-    all.sort_by_key(|b| b.1);
-    all.dedup();
-    all
-}
-
-/// What entry points do to plain data together.
-fn uses<const N: usize>(entries: [(&Module, &str); N]) -> Arc<Uses> {
-    let mut all = Uses::default();
-    for (module, entry) in entries {
-        let Uses { reads, writes } = Uses::of(&module.program, &[entry]);
-        all.reads.extend(reads);
-        all.writes.extend(writes);
-    }
-    Arc::new(all)
 }

@@ -68,6 +68,6 @@ fn what_is_no_sweep_is_told() {
          edge-on, layers\n"
     );
     assert_eq!(ran.stdout, "");
-    let help = place.run(&["bench", "--help"]).expect(0);
+    let help = place.run(&["bench", "--stress", "--help"]).expect(0);
     assert!(help.stdout.contains("Examples:"), "{}", help.stdout);
 }

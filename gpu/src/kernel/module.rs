@@ -1,7 +1,10 @@
 //! Programs on a device.
 
+use std::sync::Arc;
+
 use crate::context::Gpu;
 use crate::error::GpuError;
+use crate::pass::Uses;
 use crate::wgsl::{Program, Sources};
 
 /// A program on a device.
@@ -38,6 +41,12 @@ impl Module {
         };
         Ok(Self { program, shader })
     }
+
+    /// Whether an entry point returns anything.
+    pub(super) fn returns(&self, entry: &str) -> bool {
+        let mut entries = self.program.module.entry_points.iter();
+        entries.any(|e| e.name == entry && e.function.result.is_some())
+    }
 }
 
 #[expect(
@@ -51,4 +60,31 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
     // capacity, all of which the host has made the buffers for; and they follow no link
     // that the host has not certified for these very lists.
     unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
+}
+
+/// What entry points bind, by the names that our file gives the numbers: the host knows
+/// no others.
+pub(super) fn bindings<const N: usize>(
+    ours: &Module,
+    entries: [(&Module, &str); N],
+) -> Vec<(String, u32)> {
+    let names = ours.program.names();
+    let used = |(module, entry): &(&Module, &str)| module.program.bindings(entry);
+    let numbers = entries.iter().filter_map(used).flatten().map(|b| b.1);
+    let named = |number| Some((names.get(&number)?.clone(), number));
+    let mut all: Vec<(String, u32)> = numbers.filter_map(named).collect();
+    all.sort_by_key(|b| b.1);
+    all.dedup();
+    all
+}
+
+/// What entry points do to plain data together.
+pub(super) fn uses<const N: usize>(entries: [(&Module, &str); N]) -> Arc<Uses> {
+    let mut all = Uses::default();
+    for (module, entry) in entries {
+        let Uses { reads, writes } = Uses::of(&module.program, &[entry]);
+        all.reads.extend(reads);
+        all.writes.extend(writes);
+    }
+    Arc::new(all)
 }

@@ -1,0 +1,186 @@
+//! What `triptych replay` is asked for.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::ValueEnum;
+use triptych_gpu::kernel::Foreign;
+use triptych_gpu::raster::Path;
+
+use super::super::adapters::adapters;
+use crate::again::{Again, option};
+use crate::cache::Cache;
+use crate::dump::Dump;
+use crate::replay::gpu::{Adapter, Adapters, From, Vertices};
+use crate::replay::{Extent, Options};
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  \
+    triptych replay raster/ abuffer/quads\n  \
+    triptych replay --adapter llvmpipe --path compute --json out.json\n  \
+    triptych replay my.obj --dump dump --no-cache\n  \
+    triptych replay --vertex gpu raster/near-plane\n  \
+    triptych replay --vertex hardware --path fragment raster/\n  \
+    triptych replay --kernel build=mine.wgsl abuffer/\n\n\
+    A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
+    JSON lines and exit code are those of the whole run.")]
+pub struct Args {
+    /// Parts of scene names, scene files, or meshes; the whole corpus without one
+    #[arg(value_name = "PATTERN")]
+    pub(super) patterns: Vec<String>,
+    /// Patterns are whole names
+    #[arg(long)]
+    pub(super) exact: bool,
+    /// Only these legs beside the spec (repeatable)
+    #[arg(long, value_name = "LEG")]
+    leg: Vec<Leg>,
+    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Vec<String>,
+    /// Only this raster path
+    #[arg(long)]
+    path: Option<PathName>,
+    /// Whose vertices the GPU's later stages get
+    #[arg(long, value_name = "WHOSE", default_value = "spec")]
+    vertex: Vertices,
+    /// Feed the GPU with the spec's results before this stage, its own from there
+    /// [default: cover]
+    #[arg(long, value_name = "STAGE")]
+    gpu_from: Option<From>,
+    /// The user's kernels of a stage in place of ours (repeatable); `STAGE=?` prints the
+    /// stage's bindings as WGSL to start from
+    #[arg(long, value_name = "STAGE=FILE")]
+    pub(super) kernel: Vec<String>,
+    /// Run everything, whether a scene needs it or not
+    #[arg(long)]
+    no_skip: bool,
+    /// Run every leg again, whether anything changed or not
+    #[arg(long)]
+    no_cache: bool,
+    /// In place of the scenes' own seeds
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Write one JSON object per comparison, and a summary
+    #[arg(long, value_name = "FILE")]
+    pub(super) json: Option<PathBuf>,
+    /// Write every leg's results as NumPy arrays and images
+    #[arg(long, value_name = "DIR")]
+    dump: Option<PathBuf>,
+    /// Leave pending snapshots of scenes whose facts are not what theirs says
+    #[arg(long)]
+    pub(super) snapshot: bool,
+    /// Open the report
+    #[arg(long)]
+    pub(super) open: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Leg {
+    Spec,
+    Gpu,
+    /// In screen space, and in world space of every scene, however large
+    Embree,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum PathName {
+    /// The hardware's rasteriser
+    Fragment,
+    /// Integer arithmetic in baseline WGSL
+    Compute,
+    /// The same with 64-bit integers, where an adapter has them
+    Native,
+}
+
+impl PathName {
+    pub fn path(self) -> Path {
+        match self {
+            Self::Fragment => Path::Fragment,
+            Self::Compute => Path::Compute,
+            Self::Native => Path::Native,
+        }
+    }
+}
+
+impl Args {
+    pub(super) fn adapters(
+        &self,
+        options: &Options,
+        foreign: &[Foreign],
+    ) -> anyhow::Result<Adapters> {
+        if !options.gpu {
+            return Ok(Adapters::default());
+        }
+        let mut adapters = adapters(&self.adapter)?;
+        let runs = |a: &Adapter, path: &Path| *path != Path::Native || a.native.is_some();
+        let runs_any = |a: &Adapter| options.paths.iter().any(|path| runs(a, path));
+        anyhow::ensure!(
+            adapters.open.is_empty() || adapters.open.iter().any(runs_any),
+            "no adapter that was asked for has the 64-bit integers that --path native needs"
+        );
+        for adapter in &mut adapters.open {
+            adapter.use_foreign(foreign);
+        }
+        Ok(adapters)
+    }
+
+    /// The cache, unless all is to run.
+    pub(super) fn cache(&self, out: &std::path::Path) -> anyhow::Result<Option<Cache>> {
+        if self.no_cache || self.snapshot || self.dump.is_some() || !self.kernel.is_empty() {
+            return Ok(None);
+        }
+        let cache = Cache::open(&out.join("cache")).context("cannot open the cache")?;
+        Ok(Some(cache))
+    }
+
+    /// What a command must repeat to see the same result.
+    pub(super) fn again(&self) -> Again {
+        let mut legs: Vec<String> = self.leg.iter().map(|leg| chosen("--leg", *leg)).collect();
+        legs.extend(self.adapter.iter().map(|name| option("--adapter", name)));
+        legs.extend(self.path.map(|path| chosen("--path", path)));
+        let mut options = Vec::new();
+        options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
+        if self.vertex != Vertices::default() {
+            options.push(chosen("--vertex", self.vertex));
+        }
+        let from = self.gpu_from.filter(|from| *from != From::default());
+        options.extend(from.map(|from| chosen("--gpu-from", from)));
+        options.extend(self.kernel.iter().map(|kernel| option("--kernel", kernel)));
+        options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
+        Again { legs, options }
+    }
+
+    pub(super) fn options(&self) -> anyhow::Result<Options> {
+        let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
+        let from = self
+            .vertex
+            .from(self.gpu_from)
+            .map_err(anyhow::Error::msg)?;
+        Ok(Options {
+            gpu: wanted(Leg::Gpu),
+            broken: Vec::new(),
+            embree: wanted(Leg::Embree),
+            world: match self.leg.contains(&Leg::Embree) {
+                true => Extent::All,
+                false => Extent::Small,
+            },
+            paths: match self.path {
+                None => Options::default().paths,
+                Some(path) => vec![path.path()],
+            },
+            from,
+            vertex: self.vertex,
+            skip: !self.no_skip,
+            seed: self.seed,
+            dump: self.dump.as_ref().map(Dump::new),
+            pictures: true,
+            cache: None,
+        })
+    }
+}
+
+/// An option whose values are listed, ready for a shell.
+fn chosen(name: &str, value: impl ValueEnum) -> String {
+    let value = value.to_possible_value().expect("no value is hidden");
+    option(name, value.get_name())
+}
