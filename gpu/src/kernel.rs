@@ -159,7 +159,7 @@ impl Kernels {
     /// WGSL errors at their place; what the device refuses.
     pub fn fragment(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
         self.get(gpu, file, entry, |ours, module| {
-            let returns = self.fault == Some(Fault::ColourWritten) && module.returns(entry);
+            let returns = self.fault == Some(Fault::ColourWritten) && module.program.returns(entry);
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,
@@ -237,14 +237,6 @@ impl Kernels {
         let module = Arc::new(Module { program, shader });
         programs.insert(file.to_owned(), module.clone());
         Ok(module)
-    }
-}
-
-impl Module {
-    /// Whether an entry point returns anything.
-    fn returns(&self, entry: &str) -> bool {
-        let mut entries = self.program.module.entry_points.iter();
-        entries.any(|e| e.name == entry && e.function.result.is_some())
     }
 }
 
