@@ -174,7 +174,7 @@ impl Kernels {
         entry: &str,
     ) -> Result<Arc<Kernel>, GpuError> {
         self.get(gpu, file, [place, entry], |ours, module| {
-            let returns = self.fault == Some(Fault::ColourWritten) && module.returns(entry);
+            let returns = self.fault == Some(Fault::ColourWritten) && module.program.returns(entry);
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,

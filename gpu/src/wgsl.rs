@@ -227,6 +227,12 @@ impl Program {
             .map_or(1, |(number, _)| number)
     }
 
+    /// Whether an entry point returns anything.
+    pub fn returns(&self, entry: &str) -> bool {
+        let mut entries = self.module.entry_points.iter();
+        entries.any(|e| e.name == entry && e.function.result.is_some())
+    }
+
     /// The names of all resource variables by their bindings.
     pub fn names(&self) -> BTreeMap<u32, String> {
         let variables = self.module.global_variables.iter();

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use triptych_harness::corpus::FINDINGS;
 
 use super::{File, assert_none, files, root};
 use crate::manifests::targets;
@@ -118,8 +117,8 @@ fn every_wgsl_file_is_reached() {
     assert_none(&violations);
 }
 
-/// A case has a scene.toml that names every other file beside it, and a row in the
-/// README; a row has a case.
+/// A case has a scene.toml, or a finding a finding.toml, that names every other file beside
+/// it, and a row in the README; a row has a case.
 #[test]
 fn every_corpus_file_is_used() {
     let all = files();
@@ -135,14 +134,17 @@ fn every_corpus_file_is_used() {
             continue;
         };
         cases.insert(*case);
-        let scene = find(&format!("corpus/{family}/{case}/scene.toml"));
+        let own = match *family {
+            "findings" => "finding.toml",
+            _ => "scene.toml",
+        };
+        let scene = find(&format!("corpus/{family}/{case}/{own}"));
         let beside = rest.join("/");
         let stem = beside.split('.').next().unwrap_or_default();
         // A material library goes by the stem of its mesh.
         let named = scene.is_some_and(|s| s.text().contains(stem));
-        let finding = *family == FINDINGS && beside == "finding.toml";
-        if beside != "scene.toml" && !finding && !named {
-            violations.push(format!("{}: its scene.toml does not name it", file.name));
+        if beside != own && !named {
+            violations.push(format!("{}: its {own} does not name it", file.name));
         }
         if !readme.contains(&format!("| `{case}` |")) {
             violations.push(format!("{}: {case} is not in corpus/README.md", file.name));

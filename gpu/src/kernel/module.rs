@@ -41,12 +41,6 @@ impl Module {
         };
         Ok(Self { program, shader })
     }
-
-    /// Whether an entry point returns anything.
-    pub(super) fn returns(&self, entry: &str) -> bool {
-        let mut entries = self.program.module.entry_points.iter();
-        entries.any(|e| e.name == entry && e.function.result.is_some())
-    }
 }
 
 #[expect(
