@@ -53,6 +53,9 @@ pub enum Fault {
     ColourWritten,
 }
 
+/// By file, vertex entry point (none of a compute kernel's) and entry point.
+type Built = BTreeMap<(String, [String; 2]), Arc<Kernel>>;
+
 /// The kernels of one device, compiled when first asked for.
 pub struct Kernels {
     sources: Sources,
@@ -61,8 +64,7 @@ pub struct Kernels {
     /// Where an entry point comes from, if not from the file that ships it.
     foreign: BTreeMap<&'static str, String>,
     programs: Mutex<BTreeMap<String, Arc<Module>>>,
-    /// By file, vertex entry point (none of a compute kernel's) and entry point.
-    kernels: Mutex<BTreeMap<(String, [String; 2]), Arc<Kernel>>>,
+    kernels: Mutex<Built>,
 }
 
 impl Kernels {
@@ -134,7 +136,7 @@ impl Kernels {
         self.programs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn kernels(&self) -> MutexGuard<'_, BTreeMap<(String, [String; 2]), Arc<Kernel>>> {
+    fn kernels(&self) -> MutexGuard<'_, Built> {
         self.kernels.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -2,35 +2,18 @@
 //!
 //! The driver is handed clip space as `f32`; these numbers are the input, and exact. The
 //! triangle on the screen follows in `f64`, clipped to the view. What the driver does
-//! before it rasterises puts a corner elsewhere by at most a *reach*, and [`Region`] says
-//! what it then must, may and must not cover. Its parts, in pixels, with U = 2^-23, H half
-//! the viewport, N the largest normalised coordinate of a corner and C the distance of the
-//! viewport's middle from the target's first pixel:
-//!
-//! - *Rounding to the grid*: one step of the driver's grid, whichever way it rounds.
-//! - *Division and viewport*: no rule binds the divider; it is taken to be as good as
-//!   WGSL's. A reciprocal within 2.5 U and a product, 3.5 U, then a product and a sum:
-//!   `U (4.5 H N + (H N + C))`. A rasteriser's grid reaches 2^16 pixels at most, so beyond
-//!   N = 32 a driver clips.
-//! - *Clipping*, where a corner lies outside the view: a new point is `A + t (B - A)`,
-//!   with t a quotient of distances whose signs differ, so that nothing cancels: 1 U for
-//!   each distance, 1 for their difference, 2.5 for the quotient, then a difference, a
-//!   product and a sum; or `(a B - b A) / (a - b)`, which has fewer. In each component that
-//!   is at most `8 U (|B - A| + max(|A|, |B|))`, for each plane that cuts. Divided by the
-//!   least w that is in view it is a distance on the screen, `H (e_x + N e_w) / w`.
-//!
-//! Where x and y are clipped does not matter ([`Region`]); depth is clipped at 0 and 1,
-//! where both sides do it. Distances of the given corners have certain signs: z is exact,
-//! and a rounded `w - z` or `w - |x|` keeps its sign. A triangle whose reach exceeds
-//! [`REACH_MAX`] is not judged, and counted: its corner in view is so near the eye that
-//! rounding decides where it is.
+//! before it rasterises puts a corner elsewhere by at most a *reach* ([`reach`]) and one
+//! step of its grid, whichever way it rounds; [`Region`] says what it then must, may and
+//! must not cover. A triangle whose reach exceeds [`REACH_MAX`] is not judged, and counted:
+//! it is cut so near the eye that rounding decides where it is.
 //!
 //! Depth keys are not compared: the rasterised corners are known only up to the reach.
+
+mod reach;
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use triptych_spec::bound::U;
 use triptych_spec::raster::Fragment;
 use triptych_spec::scene::{Scene, Size};
 use triptych_spec::vertex::{self, GUARD, Plane, Position, clip_triangle, guard_origin};
@@ -40,12 +23,10 @@ use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::compare::fragments::at;
 use crate::row::Class;
+use reach::Reach;
 
 /// Half the viewport, in pixels.
 const HALF: f64 = GUARD as f64 / 2.0;
-
-/// Normalised coordinates beyond which a driver clips: 2^16 pixels.
-const NORMALISED_MAX: f64 = 65_536.0 / HALF;
 
 /// What a driver is handed, and what it must make of it.
 pub struct Handed {
@@ -220,8 +201,9 @@ impl Pairs {
 fn place(size: Size, corners: [Position<f32>; 3], step: f64) -> Place {
     let exact = corners.map(|c| c.map(f64::from));
     let middle = [size.width, size.height].map(middle);
-    let pixels =
-        exact.map(|[x, y, z, w]| [x * HALF + middle[0] * w, -y * HALF + middle[1] * w, z, w]);
+    let pixel =
+        |[x, y, z, w]: Position<f64>| [x * HALF + middle[0] * w, -y * HALF + middle[1] * w, z, w];
+    let pixels = exact.map(pixel);
     let planes = Plane::all(size);
     let polygon = clip_triangle(&planes, pixels, |_, plain| plain);
     if polygon.is_empty() {
@@ -229,58 +211,21 @@ fn place(size: Size, corners: [Position<f32>; 3], step: f64) -> Place {
     }
     // Clipped in depth alone: a driver need not clip x and y.
     let [near, far, ..] = planes;
-    let depth = clip_triangle(&[near, far, near, far, near, far], pixels, |_, plain| plain);
-    let reach = step + before_snapping(exact, &depth, middle);
-    let screen = polygon.iter().map(|[x, y, _, w]| [x / w, y / w]);
-    let region = Region::new(&screen.collect::<Vec<_>>(), reach);
+    let deep = clip_triangle(&[near, far, near, far, near, far], pixels, |_, plain| plain);
+    let screen = |[x, y, _, w]: &Position<f64>| [x / w, y / w];
+    let normalised = |p: &Position<f64>| {
+        let [x, y] = screen(p);
+        [(x - middle[0]) / HALF, (y - middle[1]) / HALF, 1.0 / p[3]]
+    };
+    let reach = Reach {
+        corners: exact,
+        deep: deep.iter().map(normalised).collect(),
+        target: [size.width, size.height].map(|side| f64::from(side) / 2.0 / HALF),
+        middle: middle[0].abs().max(middle[1].abs()),
+    };
+    let corners: Vec<[f64; 2]> = polygon.iter().map(screen).collect();
+    let region = Region::new(&corners, step + reach.before_snapping());
     region.map_or(Place::Unjudged, Place::There)
-}
-
-/// How far a corner may be off before the driver rounds it to its grid, in pixels.
-/// `polygon` is the triangle in homogeneous pixels, clipped in depth.
-fn before_snapping(
-    corners: [Position<f64>; 3],
-    polygon: &[Position<f64>],
-    middle: [f64; 2],
-) -> f64 {
-    let normalised = polygon.iter().flat_map(|[x, y, _, w]| {
-        let of = |v: f64, middle: f64| (v / w - middle).abs() / HALF;
-        [of(*x, middle[0]), of(*y, middle[1])]
-    });
-    let largest = normalised.fold(1.0, f64::max).min(NORMALISED_MAX);
-    let centre = middle[0].abs().max(middle[1].abs());
-    let viewport = U * (4.5 * HALF * largest + (HALF * largest + centre));
-    let planes: [&dyn Fn(&Position<f64>) -> bool; 6] = [
-        &|c| c[2] < 0.0,
-        &|c| c[2] > c[3],
-        &|c| c[0] < -c[3],
-        &|c| c[0] > c[3],
-        &|c| c[1] < -c[3],
-        &|c| c[1] > c[3],
-    ];
-    let cuts = planes.iter().filter(|outside| corners.iter().any(outside));
-    let cuts = cuts.count() as f64;
-    let error = |k: usize| {
-        let of = corners.map(|c| c[k]);
-        let (low, high) = (
-            of.iter().copied().fold(f64::INFINITY, f64::min),
-            of.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        );
-        cuts * 8.0 * U * ((high - low) + high.abs().max(low.abs()))
-    };
-    let least = polygon.iter().map(|c| c[3]).fold(f64::INFINITY, f64::min) - error(3);
-    let across = error(0).max(error(1)) + largest * error(3);
-    let clipping = if cuts == 0.0 {
-        0.0
-    } else {
-        HALF * across / least
-    };
-    if least > 0.0 {
-        // Products of two errors, and what `f64` rounds.
-        (viewport + clipping) * (1.0 + 1e-3)
-    } else {
-        f64::INFINITY
-    }
 }
 
 /// The middle of the viewport along an axis, in pixels of the target.

@@ -35,8 +35,8 @@ const UNIT_BITS: u32 = 16;
 /// Half a pixel, where samples lie.
 const HALF: i64 = 1 << (UNIT_BITS - 1);
 
-/// Larger reaches are not judged: a quarter of what lies between target and guard.
-pub const REACH_MAX: f64 = 256.0;
+/// Larger reaches are not judged: far less than what lies between target and guard.
+pub const REACH_MAX: f64 = 32.0;
 
 /// A polygon and how far its corners may be off.
 #[derive(Clone, Debug, PartialEq, Eq)]

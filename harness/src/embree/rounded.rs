@@ -35,17 +35,17 @@ impl Rounded {
     }
 
     /// Sum.
-    pub fn add(self, other: Self) -> Self {
+    pub fn plus(self, other: Self) -> Self {
         Self::of(self.value + other.value, self.error + other.error)
     }
 
     /// Difference.
-    pub fn sub(self, other: Self) -> Self {
+    pub fn minus(self, other: Self) -> Self {
         Self::of(self.value - other.value, self.error + other.error)
     }
 
     /// Product.
-    pub fn mul(self, other: Self) -> Self {
+    pub fn times(self, other: Self) -> Self {
         let propagated = self.value.abs() * other.error
             + other.value.abs() * self.error
             + self.error * other.error;
@@ -66,14 +66,14 @@ pub type Vector = [Rounded; 3];
 
 /// Vector product.
 pub fn cross(a: Vector, b: Vector) -> Vector {
-    let term = |i: usize, j: usize| a[i].mul(b[j]).sub(a[j].mul(b[i]));
+    let term = |i: usize, j: usize| a[i].times(b[j]).minus(a[j].times(b[i]));
     [term(1, 2), term(2, 0), term(0, 1)]
 }
 
 /// Scalar product; sums may come in any order.
 pub fn dot(a: Vector, b: Vector) -> Rounded {
-    let terms = [0, 1, 2].map(|i| a[i].mul(b[i]));
-    let sum = terms[0].add(terms[1]).add(terms[2]);
+    let terms = [0, 1, 2].map(|i| a[i].times(b[i]));
+    let sum = terms[0].plus(terms[1]).plus(terms[2]);
     // Another order rounds another partial sum, which is at most that of the terms' sizes.
     let sizes: f64 = terms.iter().map(|t| t.value.abs() + t.error).sum();
     Rounded {

@@ -62,7 +62,7 @@ pub fn promise(world: &World, vertices: [u32; 3], ray: &Ray) -> Promise {
     };
     let corner = |v: u32| {
         let at = world.points[v as usize].map(Rounded::once);
-        [0, 1, 2].map(|i| at[i].sub(sight.origin[i]))
+        [0, 1, 2].map(|i| at[i].minus(sight.origin[i]))
     };
     let corners = vertices.map(corner);
     let [a, b, c] = corners;
@@ -77,7 +77,7 @@ pub fn promise(world: &World, vertices: [u32; 3], ray: &Ray) -> Promise {
 /// Whether the ray meets the triangle; `None` if rounding may decide.
 fn side(edges: [Vector; 3], sums: [Vector; 3], direction: Vector) -> Option<bool> {
     let sides = [0, 1, 2].map(|i| dot(cross(edges[i], sums[i]), direction));
-    let sum = sides[0].add(sides[1]).add(sides[2]);
+    let sum = sides[0].plus(sides[1]).plus(sides[2]);
     // Embree accepts both orientations.
     let inside = |sign: f64| sides.iter().all(|s| s.value * sign > s.error);
     if inside(1.0) || inside(-1.0) {
@@ -128,9 +128,9 @@ fn distance(corners: [Vector; 3], edges: [Vector; 3], sight: &Sight, scale: f64)
 }
 
 fn minus(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i].sub(b[i]))
+    [0, 1, 2].map(|i| a[i].minus(b[i]))
 }
 
 fn plus(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[i].add(b[i]))
+    [0, 1, 2].map(|i| a[i].plus(b[i]))
 }
