@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-
 use super::{File, assert_none, files, root};
 use crate::manifests::targets;
 
