@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::{env, fs, io};
 
-use crate::corpus::{self, Entry};
+use crate::corpus::{self, Entry, FINDINGS};
 use crate::embree;
 use crate::error::InputError;
 use crate::mesh::Intake;
@@ -61,6 +61,7 @@ pub fn bundle(to: &Path, scenes: &[Entry]) -> Result<Bundled, InputError> {
         for entry in scenes {
             packer.scene(entry)?;
         }
+        packer.findings()?;
         let lock = corpus::root().join("meshes.lock");
         packer
             .copy(&lock, Path::new("corpus/meshes.lock"))
@@ -109,6 +110,24 @@ impl Packer<'_> {
         fs::write(&script, RUN)?;
         executable(&script)?;
         self.bundled.files.push(("run".into(), RUN.len() as u64));
+        Ok(())
+    }
+
+    /// What drivers do wrong, all of it: `doctor` looks for it on the other machine, too.
+    fn findings(&mut self) -> Result<(), InputError> {
+        let (corpus, name) = (corpus::root(), Path::new("corpus"));
+        let fail = |e: io::Error| InputError::new(corpus.join(FINDINGS), e.to_string());
+        if !corpus.join(FINDINGS).is_dir() {
+            return Ok(());
+        }
+        for case in corpus::folders(&corpus.join(FINDINGS))? {
+            let folder = Path::new(FINDINGS).join(case);
+            for file in fs::read_dir(corpus.join(&folder)).map_err(fail)? {
+                let file = file.map_err(fail)?;
+                let to = name.join(&folder).join(file.file_name());
+                self.copy(&file.path(), &to).map_err(fail)?;
+            }
+        }
         Ok(())
     }
 

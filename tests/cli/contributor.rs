@@ -203,6 +203,7 @@ fn a_bundle_runs_without_an_environment() {
     place.write("corpus/abuffer/flat/scene.toml", SCENE);
     place.write("corpus/abuffer/other/scene.toml", SCENE);
     place.write("full/a", "");
+    place.write("corpus/findings/odd/finding.toml", "");
     let ran = place.run(&["bundle", "out", "flat"]).expect(0);
     assert!(
         ran.stdout.contains("copy it, and start out/run"),
@@ -211,6 +212,8 @@ fn a_bundle_runs_without_an_environment() {
     );
     let out = place.root.join("moved");
     fs::rename(place.root.join("out"), &out).expect("it can be moved");
+    let finding = out.join("corpus/findings/odd/finding.toml");
+    assert!(finding.is_file(), "what drivers do wrong goes along");
     let libraries = fs::read_dir(out.join("lib")).expect("Embree").count();
     assert!(libraries > 0, "Embree is in it");
     let mut command = Command::new(out.join("run"));

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use triptych_harness::corpus::Entry;
 use triptych_harness::error::InputError;
+use triptych_harness::json::{self, Merged};
 use triptych_harness::mesh::{self, Intake, Mesh};
-use triptych_harness::scene::{self, Loaded};
+use triptych_harness::scene::{self, LoadError, Loaded};
 
 #[path = "../hostile/sound.rs"]
 mod sound;
@@ -16,7 +18,7 @@ mod sound;
 const BETWEEN: &[u8] = b"\n%%%%\n";
 
 /// The parts of an input, as many as there are names; those that are missing are empty.
-pub fn files(names: &[&str], bytes: &[u8]) -> BTreeMap<PathBuf, Vec<u8>> {
+fn files(names: &[&str], bytes: &[u8]) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut rest = bytes;
     let mut files = BTreeMap::new();
     for name in names {
@@ -31,36 +33,61 @@ pub fn files(names: &[&str], bytes: &[u8]) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-/// Loads one of the files as a mesh: it is sound, or one line says what is wrong.
-pub fn mesh(name: &str, files: &BTreeMap<PathBuf, Vec<u8>>) {
-    let mut intake = Intake::from_memory(files);
+/// An OBJ, and the material library beside it.
+pub fn obj(bytes: &[u8]) -> Result<Mesh, InputError> {
+    mesh("a.obj", &files(&["a.obj", "a.mtl"], bytes))
+}
+
+/// A PLY of any of the three encodings.
+pub fn ply(bytes: &[u8]) -> Result<Mesh, InputError> {
+    mesh("a.ply", &files(&["a.ply"], bytes))
+}
+
+/// Hair: a layout, and the data that it describes. They are not packed, so that the
+/// fuzzer sees what gzip would hide from it.
+pub fn hair(bytes: &[u8]) -> Result<Mesh, InputError> {
+    let path = Path::new("a.bin");
+    let layout = mesh::layout_of(path).display().to_string();
+    let files = files(&[&layout, "a.bin"], bytes);
+    let mut intake = Intake::from_memory(&files);
+    mesh::load_hair(&mut intake, path, files[path].clone(), NonZeroU32::MIN)
+}
+
+fn mesh(name: &str, files: &BTreeMap<PathBuf, Vec<u8>>) -> Result<Mesh, InputError> {
     let path = Path::new(name);
-    let bytes = files[path].clone();
-    judge(mesh::load(&mut intake, path, bytes));
+    mesh::load(&mut Intake::from_memory(files), path, files[path].clone())
 }
 
-/// Holds what came of a mesh against what is promised.
-pub fn judge(loaded: Result<Mesh, InputError>) {
-    match loaded {
-        Ok(mesh) => {
-            sound::assert_sound(&mesh);
-            if let Some(line) = mesh.notes.line() {
-                one_line(line);
-            }
-        }
-        Err(error) => one_line(error),
-    }
-}
-
-/// Loads `scene.toml`, and whatever of the other files it names.
-pub fn scene(files: &BTreeMap<PathBuf, Vec<u8>>) {
-    let mut intake = Intake::from_memory(files);
+/// A scene file, with two meshes and a library that it may name.
+pub fn scene(bytes: &[u8]) -> Result<Loaded, LoadError> {
+    let files = files(&["scene.toml", "a.obj", "a.mtl", "a.ply"], bytes);
     let entry = Entry {
         name: "fuzz".to_owned(),
         family: "abuffer".to_owned(),
         path: PathBuf::from("scene.toml"),
     };
-    match scene::load_from(&mut intake, &entry, None) {
+    scene::load_from(&mut Intake::from_memory(&files), &entry, None)
+}
+
+/// JSON lines, as `triptych report` reads them.
+pub fn json(bytes: &[u8]) -> Result<Merged, InputError> {
+    json::read_from(Path::new("a.json"), bytes)
+}
+
+/// Holds a mesh, or why there is none, against what is promised of every one.
+pub fn judge_mesh(loaded: Result<Mesh, InputError>) {
+    match loaded {
+        Ok(mesh) => {
+            sound::assert_sound(&mesh);
+            mesh.notes.line().iter().for_each(one_line);
+        }
+        Err(error) => one_line(error),
+    }
+}
+
+/// The same of a scene.
+pub fn judge_scene(loaded: Result<Loaded, LoadError>) {
+    match loaded {
         Ok(loaded) => assert_finite(&loaded),
         Err(error) => one_line(error),
     }

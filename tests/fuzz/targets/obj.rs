@@ -3,6 +3,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let files = triptych_fuzz::files(&["a.obj", "a.mtl"], bytes);
-    triptych_fuzz::mesh("a.obj", &files);
+    triptych_fuzz::judge_mesh(triptych_fuzz::obj(bytes));
 });

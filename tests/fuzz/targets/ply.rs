@@ -3,6 +3,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let files = [("a.ply".into(), bytes.to_vec())].into();
-    triptych_fuzz::mesh("a.ply", &files);
+    triptych_fuzz::judge_mesh(triptych_fuzz::ply(bytes));
 });

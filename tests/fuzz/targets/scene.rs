@@ -3,6 +3,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let names = ["scene.toml", "a.obj", "a.mtl", "a.ply"];
-    triptych_fuzz::scene(&triptych_fuzz::files(&names, bytes));
+    triptych_fuzz::judge_scene(triptych_fuzz::scene(bytes));
 });
