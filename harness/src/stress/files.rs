@@ -20,24 +20,28 @@ pub struct Written {
     pub csv: PathBuf,
 }
 
-/// Writes both into a folder, named by date and machine.
+/// Writes both, with the endings of their kinds after `stem`.
 ///
 /// # Errors
 /// A folder or file that cannot be written.
 pub fn write(
-    folder: &Path,
+    stem: &Path,
     run: &RunInfo,
     sweeps: &[Sweep],
     all: &[Measured],
     wrong: &[Wrong],
 ) -> io::Result<Written> {
-    std::fs::create_dir_all(folder)?;
-    let words = run.machine.iter().map(|(_, value)| value.replace(' ', "-"));
-    let machine = words.collect::<Vec<_>>().join("-");
-    let stem = format!("stress-{}-{machine}", run.date);
+    if let Some(folder) = stem.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    let ending = |ending: &str| {
+        let mut name = stem.as_os_str().to_owned();
+        name.push(ending);
+        PathBuf::from(name)
+    };
     let written = Written {
-        markdown: folder.join(format!("{stem}.md")),
-        csv: folder.join(format!("{stem}.csv")),
+        markdown: ending(".md"),
+        csv: ending(".csv"),
     };
     std::fs::write(&written.csv, csv(all))?;
     std::fs::write(&written.markdown, markdown(run, sweeps, all, wrong))?;

@@ -10,6 +10,7 @@ use super::super::Verdict;
 use super::super::adapters::{adapters, could_not_run};
 use super::super::run_info::run_info;
 use crate::again::{Again, option};
+use crate::bench::Machine;
 use crate::output::{complain, stdout};
 use crate::replay::Options;
 use crate::replay::gpu::Adapter;
@@ -72,7 +73,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let seconds = start.elapsed().as_secs_f64();
     let info = run_info(&run.adapters, &run.options.broken, Some(&library), seconds);
     let folder = run.folder.display();
-    let written = stress::write(&run.folder, &info, &sweeps, &all, &wrong);
+    let machine = Machine::here(&run.adapters).slug;
+    let stem = run.folder.join(format!("stress-{}-{machine}", info.date));
+    let written = stress::write(&stem, &info, &sweeps, &all, &wrong);
     let written = written.with_context(|| format!("cannot write to {folder}"))?;
     if let Some(file) = &args.csv {
         let copied = std::fs::copy(&written.csv, file);
