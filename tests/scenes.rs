@@ -12,6 +12,8 @@ mod devices;
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::fs::File;
+use std::io::BufWriter;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -85,8 +87,12 @@ fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
         world: Extent::All,
         ..Options::default()
     };
+    let rows = rows_file(entry)?;
     let outcome = replay(entry, &adapters, &options)?;
-    leave_rows(entry, &outcome, start.elapsed().as_secs_f64())?;
+    if let Some(mut json) = rows {
+        json.rows(&outcome.rows)?;
+        json.finish(start.elapsed().as_secs_f64())?;
+    }
     let mut wrong = judge(&outcome, &adapters);
     if !wrong.is_empty() {
         adapters.spoil();
@@ -108,16 +114,15 @@ fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
     Err(message.into())
 }
 
-/// Leaves the rows where `TRIPTYCH_ROWS` says, in a file of the scene's.
-fn leave_rows(entry: &Entry, outcome: &Outcome, seconds: f64) -> std::io::Result<()> {
+/// Where `TRIPTYCH_ROWS` says that rows go, a file of the scene's. It is begun before the
+/// scene is replayed: what fails leaves it without an end, and the report refuses it.
+fn rows_file(entry: &Entry) -> std::io::Result<Option<json::Writer<BufWriter<File>>>> {
     let Some(folder) = std::env::var_os("TRIPTYCH_ROWS").map(PathBuf::from) else {
-        return Ok(());
+        return Ok(None);
     };
     std::fs::create_dir_all(&folder)?;
     let file = folder.join(entry.name.replace('/', "-") + ".json");
-    let mut json = json::Writer::create(&file)?;
-    json.rows(&outcome.rows)?;
-    json.finish(seconds).map(drop)
+    json::Writer::create(&file).map(Some)
 }
 
 /// What is wrong with an outcome: rows that diverge, legs that compared nothing and

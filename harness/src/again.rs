@@ -36,8 +36,15 @@ impl Again {
     }
 }
 
+/// What a user types to start the program: `cargo triptych`, or what `TRIPTYCH_AS` says,
+/// as the script of a bundle does.
+pub fn program() -> String {
+    std::env::var("TRIPTYCH_AS").unwrap_or_else(|_| "cargo triptych".to_owned())
+}
+
 fn command(options: &[&Vec<String>], argument: &str) -> String {
-    let mut words = vec!["cargo triptych replay --exact"];
+    let program = program();
+    let mut words = vec![program.as_str(), "replay --exact"];
     words.extend(options.iter().copied().flatten().map(String::as_str));
     if argument.starts_with('-') {
         words.push("--");

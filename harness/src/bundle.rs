@@ -22,6 +22,7 @@ set -eu
 here=$(CDPATH='' cd -- "$(dirname "$0")" && pwd -P)
 LD_LIBRARY_PATH=$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 export LD_LIBRARY_PATH TRIPTYCH_CORPUS="$here/corpus" TRIPTYCH_NATIVE="$here/native"
+export TRIPTYCH_AS="$0"
 [ $# -gt 0 ] || set -- replay --no-cache
 exec "$here/triptych" "$@"
 "#;

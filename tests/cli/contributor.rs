@@ -224,13 +224,22 @@ fn a_bundle_runs_without_an_environment() {
         .env("PATH", "/usr/bin:/bin");
     let ran = Ran::of(&mut command).expect(0);
     assert!(ran.stdout.contains("All agree: 1 scene,"), "{}", ran.stdout);
-    assert!(
-        out.join("reports/out/index.html").is_file(),
-        "the report is beside it"
-    );
+    let page = fs::read_to_string(out.join("reports/out/index.html"));
+    let page = page.expect("the report is beside it");
+    let again = format!("{} replay --exact", out.join("run").display());
+    assert!(page.contains(&again), "commands that work there");
     let full = place.run(&["bundle", "full"]).expect(2).stderr;
     assert!(
         full.contains("full: is not empty; name a new folder"),
         "{full}"
+    );
+    // Nothing there leads back here, and a finding that cannot be read ends nothing.
+    fs::remove_dir_all(place.root.join("corpus")).expect("ours");
+    let mut command = Command::new(out.join("run"));
+    let doctor = Ran::of(command.arg("doctor")).expect(1).stdout;
+    let told = "Findings\n  cannot be read: ";
+    assert!(
+        doctor.contains(told) && doctor.contains("Embree\n"),
+        "{doctor}"
     );
 }

@@ -52,7 +52,7 @@ fn our_own_kernel_from_a_file_agrees() {
     for stage in ["opaque", "build", "sort", "resolve"] {
         let kernel = format!("{stage}=mine.wgsl");
         place
-            .run(&["replay", "--leg", "gpu", "--kernel", &kernel])
+            .run(&["replay", "--no-skip", "--leg", "gpu", "--kernel", &kernel])
             .expect(0);
     }
 }
@@ -102,6 +102,38 @@ fn a_path_without_a_kernel_is_skipped_and_says_so() {
     }
 }
 
+/// A kernel whose stage the scene does not need has not been judged.
+#[test]
+fn a_kernel_that_never_runs_has_not_agreed() {
+    let place = Place::new("kernel-idle");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    for stage in ["opaque", "build", "transform"] {
+        let skeleton = place.run(&["replay", "--kernel", &format!("{stage}=?")]);
+        place.write(&format!("{stage}.wgsl"), &skeleton.expect(0).stdout);
+    }
+    for (stage, from) in [
+        ("opaque", &[][..]),
+        ("build", &["--gpu-from", "sort"]),
+        ("transform", &["--gpu-from", "snap"]),
+    ] {
+        let kernel = format!("{stage}={stage}.wgsl");
+        let command = [&["replay", "--leg", "gpu", "--kernel", &kernel][..], from].concat();
+        let stderr = place.run(&command).expect(2).stderr;
+        let part = format!("stage {stage} was skipped everywhere");
+        assert!(stderr.contains(&part), "{stderr}");
+    }
+    // The scene has nothing opaque, but all of it may be asked for.
+    let command = [
+        "replay",
+        "--leg",
+        "gpu",
+        "--no-skip",
+        "--kernel",
+        "build=build.wgsl",
+    ];
+    place.run(&command).expect(1);
+}
+
 #[test]
 fn mistakes_have_a_line_each() {
     let place = Place::new("kernel-mistakes");
@@ -125,7 +157,11 @@ fn mistakes_have_a_line_each() {
         ),
         (
             &["sort=size.wgsl"],
-            "size.wgsl:1: no entry point of stage sort: sort",
+            "size.wgsl:1: stage sort needs an entry point sort",
+        ),
+        (
+            &["build=?", "build=mine.wgsl"],
+            "prints a skeleton; leave the other --kernel out",
         ),
         (
             &["build=mine.wgsl", "build=mine.wgsl"],

@@ -3,14 +3,22 @@
 use std::fs;
 
 use super::results::{count, json};
-use super::{Place, SCENE};
+use super::{Place, SCENE, repository};
 
-/// A mutant whose scene is beside the table, not in the corpus.
+/// A mutant, and its scene.
 const MUTANT: &str = "last-of-equals-shows";
+const GROUND: &str = "corpus/abuffer/opaque-ties/scene.toml";
+
+fn place(name: &str) -> Place {
+    let place = Place::new(name);
+    let scene = fs::read_to_string(repository().join(GROUND)).expect("the mutant's scene");
+    place.write(GROUND, &scene);
+    place
+}
 
 #[test]
 fn a_mutant_is_killed_and_written() {
-    let place = Place::new("mutants");
+    let place = place("mutants");
     let ran = place
         .run(&["mutants", MUTANT, "--json", "m.json"])
         .expect(0);
@@ -32,10 +40,10 @@ fn a_mutant_is_killed_and_written() {
 
 #[test]
 fn the_report_shows_the_last_run() {
-    let place = Place::new("mutants-report");
+    let place = place("mutants-report");
     place.write("corpus/raster/quads/scene.toml", SCENE);
     let page = || fs::read_to_string(place.root.join("reports/out/index.html")).expect("a report");
-    let replay = ["replay", "--no-cache", "--leg", "spec"];
+    let replay = ["replay", "--no-cache", "--leg", "spec", "raster/"];
     place.run(&replay).expect(0);
     assert!(page().contains("cargo triptych mutants"), "none was run");
     place
@@ -49,6 +57,15 @@ fn the_report_shows_the_last_run() {
     place.write("reports/out/mutants.json", "{}\n");
     let ran = place.run(&replay).expect(0);
     assert!(ran.stdout.contains("mutants.json:1: "), "{}", ran.stdout);
+}
+
+/// One that cannot be run keeps no other from it.
+#[test]
+fn a_mutant_without_its_scene_is_told() {
+    let ran = place("mutants-scene").run(&["mutants", "ties"]).expect(2);
+    assert!(ran.stdout.contains(MUTANT), "{}", ran.stdout);
+    let missing = "abuffer/ties/scene.toml: does not exist";
+    assert!(ran.stderr.contains(missing), "{}", ran.stderr);
 }
 
 #[test]

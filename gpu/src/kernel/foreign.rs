@@ -53,8 +53,9 @@ impl Foreign {
         foreign.fragment = counts[1] > 0;
         let mut errors = Vec::new();
         if counts == [0, 0] {
-            let all = [stage.compute, stage.fragment].concat().join(", ");
-            errors.push(theirs.error(1, &format!("no entry point of stage {}: {all}", stage.name)));
+            let all = [stage.compute, stage.fragment].concat().join(" or ");
+            let words = format!("stage {} needs an entry point {all}", stage.name);
+            errors.push(theirs.error(1, &words));
         }
         for (names, count) in [stage.compute, stage.fragment].into_iter().zip(counts) {
             for name in names.iter().filter(|_| count > 0) {

@@ -34,7 +34,7 @@ pub fn run() -> anyhow::Result<Verdict> {
     let last = match (complete, usable, as_found) {
         (false, ..) => "Something is missing; `./x setup` installs it.",
         (true, false, _) => "Not every adapter can be used; a replay goes on with the others.",
-        (true, true, false) => "A driver is not as it was found.",
+        (true, true, false) => "A finding is not as it was found.",
         (true, true, true) => "All legs can run.",
     };
     writeln!(out, "\n{last}")?;
@@ -78,7 +78,13 @@ fn list(out: &mut impl Write, Adapters { open, broken }: &Adapters) -> anyhow::R
 /// Runs what drivers were found to do wrong, and says whether they still do, and no
 /// others.
 fn findings(out: &mut impl Write, open: Vec<Adapter>) -> anyhow::Result<bool> {
-    let findings = findings::list(&corpus::root())?;
+    let findings = match findings::list(&corpus::root()) {
+        Ok(findings) => findings,
+        Err(error) => {
+            writeln!(out, "Findings\n  cannot be read: {error}")?;
+            return Ok(false);
+        }
+    };
     if findings.is_empty() || open.is_empty() {
         return Ok(true);
     }
@@ -86,8 +92,15 @@ fn findings(out: &mut impl Write, open: Vec<Adapter>) -> anyhow::Result<bool> {
     let mut lab = Lab::new(open);
     let mut all = true;
     for finding in &findings {
-        let cells = lab.run(&finding.case).map_err(anyhow::Error::msg)?;
         let (name, known) = (&finding.case.name, &finding.known);
+        let cells = match lab.run(&finding.case) {
+            Ok(cells) => cells,
+            Err(error) => {
+                all = false;
+                writeln!(out, "  {name}: cannot be run: {error}")?;
+                continue;
+            }
+        };
         let seen = cells.iter().filter(|c| c.outcome.kills());
         let seen: Vec<&str> = seen.map(|c| c.leg.as_str()).collect();
         let seen = match seen.is_empty() {

@@ -10,6 +10,7 @@ use crate::error::InputError;
 use crate::mesh::Intake;
 use crate::output::complain;
 use crate::replay::Options;
+use crate::row::Row;
 
 /// Bytes that a kernel's file may have; ours have a hundredth of it.
 const FILE_MAX: u64 = 1 << 20;
@@ -37,6 +38,10 @@ pub fn kernels(values: &[String]) -> anyhow::Result<Kernels> {
             format!("--kernel {value}: no stage is called {name}; there are {all}")
         })?;
         if file == "?" {
+            anyhow::ensure!(
+                values.len() == 1,
+                "--kernel {value}: prints a skeleton; leave the other --kernel out"
+            );
             return Ok(Kernels::Print(skeleton(stage)?));
         }
         anyhow::ensure!(
@@ -48,7 +53,8 @@ pub fn kernels(values: &[String]) -> anyhow::Result<Kernels> {
     Ok(Kernels::Run(foreign))
 }
 
-/// Whether a run with these options runs every kernel that it was given.
+/// Whether a run with these options runs every kernel that it was given, if a scene
+/// needs its stage.
 ///
 /// # Errors
 /// One that it would not: its agreement would say nothing about it.
@@ -58,6 +64,30 @@ pub fn all_run(foreign: &[Foreign], options: &Options) -> anyhow::Result<()> {
         Some(Foreign { stage, file, .. }) => {
             let name = stage.name;
             anyhow::bail!("--kernel {name}={file}: no leg that was asked for runs its kernels")
+        }
+    }
+}
+
+/// Whether every kernel's stage was compared somewhere, on whichever adapter.
+///
+/// # Errors
+/// One whose stage no scene of the run needs, or that `--gpu-from` left out.
+pub fn all_judged(foreign: &[Foreign], rows: &[Row]) -> anyhow::Result<()> {
+    let judged = |kernel: &&Foreign| {
+        let name = kernel.stage.name;
+        let of_stage = |row: &&Row| row.stage == name && row.b.starts_with("gpu@");
+        rows.iter()
+            .filter(of_stage)
+            .any(|row| row.skipped.is_none())
+    };
+    match foreign.iter().find(|kernel| !judged(kernel)) {
+        None => Ok(()),
+        Some(Foreign { stage, file, .. }) => {
+            let name = stage.name;
+            anyhow::bail!(
+                "--kernel {name}={file}: stage {name} was skipped everywhere, for the reasons \
+                 above, so that nothing was said of it; other scenes or --no-skip may run it"
+            )
         }
     }
 }

@@ -57,9 +57,15 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     for line in columns.header() {
         writeln!(out, "{line}")?;
     }
-    let (mut cells, mut wrong) = (Vec::new(), Vec::new());
+    let (mut cells, mut wrong, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for mutant in &selected {
-        let own = lab.run(mutant).map_err(anyhow::Error::msg)?;
+        let own = match lab.run(mutant) {
+            Ok(own) => own,
+            Err(error) => {
+                failed.push(error);
+                continue;
+            }
+        };
         writeln!(out, "{}", columns.line(&own.iter().collect::<Vec<_>>()))?;
         wrong.extend(mutant.judge(&own).err());
         cells.extend(own);
@@ -71,13 +77,17 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         .with_file_name("reports")
         .join("out")
         .join(FILE);
-    let whole = args.patterns.is_empty().then_some(own);
+    let all_ran = args.patterns.is_empty() && failed.is_empty();
+    let whole = all_ran.then_some(own);
     for file in args.json.iter().chain(&whole) {
         json::write_mutants(file, &run)
             .with_context(|| format!("cannot write {}", file.display()))?;
     }
     for line in &wrong {
         complain(line);
+    }
+    if !failed.is_empty() {
+        return could_not_run(failed);
     }
     Ok(match wrong.is_empty() {
         true => Verdict::Agree,

@@ -12,7 +12,7 @@ use triptych_gpu::kernel::Foreign;
 use super::Verdict;
 use super::adapters::could_not_run;
 use super::bench::abuffer::last_bench;
-use super::kernel::{Kernels, all_run, kernels};
+use super::kernel::{Kernels, all_judged, all_run, kernels};
 use super::mutants::last_mutants;
 use super::results::Results;
 use super::run_info::run_info;
@@ -80,6 +80,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         return could_not_run(unreadable);
     }
     let summary = results.summary(start.elapsed().as_secs_f64())?;
+    let judged = all_judged(&foreign, results.rows());
     let seconds = summary.seconds;
     let run = run_info(&adapters, &options.broken, library.as_ref(), seconds);
     let page = publish(&out, run, results, &summary)?;
@@ -89,7 +90,10 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     if !unreadable.is_empty() {
         return could_not_run(unreadable);
     }
-    verdict(&summary)
+    match verdict(&summary)? {
+        Verdict::Agree => judged.map(|()| Verdict::Agree),
+        Verdict::Diverge => Ok(Verdict::Diverge),
+    }
 }
 
 /// Leaves the scene's snapshot pending, unless it is what the accepted one says.
@@ -138,7 +142,7 @@ fn instead(kernel: &Foreign) -> String {
 }
 
 /// A run that compared nothing at all has not agreed on anything.
-fn verdict(summary: &Summary) -> anyhow::Result<Verdict> {
+pub(super) fn verdict(summary: &Summary) -> anyhow::Result<Verdict> {
     if summary.diverging > 0 {
         return Ok(Verdict::Diverge);
     }

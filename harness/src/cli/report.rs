@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 
 use super::Verdict;
+use super::replay::verdict;
 use super::run_info::run_info;
 use crate::report::{self, ReportInput};
 use crate::{corpus, json, output};
@@ -35,9 +36,10 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     writeln!(output::stdout(), "Report: {}", page.display())?;
     let mut runs = merged.mutants.iter();
     let dead = runs.all(|run| run.matrix.killed == run.matrix.mutants);
-    Ok(if merged.summary.diverging == 0 && dead {
-        Verdict::Agree
-    } else {
-        Verdict::Diverge
-    })
+    // Runs of mutants may come without a replay.
+    let only_mutants = merged.rows.is_empty() && !merged.mutants.is_empty();
+    match only_mutants || matches!(verdict(&merged.summary)?, Verdict::Agree) {
+        true if dead => Ok(Verdict::Agree),
+        _ => Ok(Verdict::Diverge),
+    }
 }

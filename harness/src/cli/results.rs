@@ -60,6 +60,11 @@ impl Results {
         Ok(())
     }
 
+    /// The rows of all scenes so far.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
     /// Ends the JSON lines. `seconds` is the run's wall time.
     pub fn summary(&mut self, seconds: f64) -> anyhow::Result<Summary> {
         match self.json.take() {

@@ -2,6 +2,7 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use crate::again::program;
 use crate::calibrate::Grid;
 use crate::embree::Library;
 use crate::replay::Outcome;
@@ -24,7 +25,7 @@ pub fn run_info(
     versions.extend(embree.map(|library| ("embree".to_owned(), library.named().to_string())));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     RunInfo {
-        command: format!("cargo triptych {}", words.join(" ")),
+        command: format!("{} {}", program(), words.join(" ")),
         date: today(),
         seconds,
         versions,

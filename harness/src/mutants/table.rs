@@ -1,7 +1,5 @@
 //! The table of mutants: one file for each family.
 
-use std::path::{Path as FilePath, PathBuf};
-
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use triptych_gpu::kernel::Fault;
@@ -27,7 +25,7 @@ pub struct Mutant {
     pub name: String,
     /// What is wrong, in words.
     pub defect: String,
-    /// A scene of the corpus that shows it, or the path of one in the repository.
+    /// The scene that shows it, by its folder in the corpus.
     #[serde(default)]
     pub scene: String,
     /// The one cause that every leg must report, and nothing else: a canary.
@@ -186,15 +184,10 @@ impl Mutant {
 
     /// Its scene.
     pub fn entry(&self) -> Entry {
-        let repository = FilePath::new(env!("CARGO_MANIFEST_DIR")).with_file_name("");
-        let path: PathBuf = match self.scene.ends_with(".toml") {
-            true => repository.join(&self.scene),
-            false => corpus::root().join(&self.scene).join("scene.toml"),
-        };
         Entry {
             name: self.scene.clone(),
             family: "abuffer".into(),
-            path,
+            path: corpus::root().join(&self.scene).join("scene.toml"),
         }
     }
 }

@@ -166,7 +166,14 @@ pub struct EmbreeSeen {
 }
 
 /// Asks Embree for every ray's hits.
-pub fn look(scene: &Scene, spec: &SpecRun, embree: &EmbreeScene) -> EmbreeSeen {
+///
+/// # Errors
+/// The first error that Embree reports.
+pub fn look(
+    scene: &Scene,
+    spec: &SpecRun,
+    embree: &EmbreeScene,
+) -> Result<EmbreeSeen, EmbreeError> {
     let mut seen = EmbreeSeen {
         picture: Vec::with_capacity(scene.size.pixels()),
         hits: 0,
@@ -175,17 +182,14 @@ pub fn look(scene: &Scene, spec: &SpecRun, embree: &EmbreeScene) -> EmbreeSeen {
     let mut hits: Vec<Hit> = Vec::new();
     let rows = 0..scene.size.height;
     for (x, y) in rows.flat_map(|y| (0..scene.size.width).map(move |x| (x, y))) {
-        if embree.hits(x, y, &mut hits).is_err() {
-            seen.picture.push(scene.background);
-            continue;
-        }
+        embree.hits(x, y, &mut hits)?;
         hits.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.prim.cmp(&b.prim)));
         hits.dedup_by_key(|h| h.prim);
         seen.hits += hits.len() as u64;
         seen.pixels += u64::from(!hits.is_empty());
         seen.picture.push(blend(scene, spec, &hits));
     }
-    seen
+    Ok(seen)
 }
 
 fn blend(scene: &Scene, spec: &SpecRun, hits: &[Hit]) -> [f32; 3] {

@@ -239,7 +239,14 @@ impl<'a> Run<'a> {
         let seen = embree::run(&spec, budget, &mut self.rows);
         if let Some((embree, unlike)) = seen.filter(|_| self.options.pictures) {
             let (scene, spec) = (&self.loaded.scene, &spec.value);
-            let seen = embree::look(scene, spec, &embree);
+            let seen = match embree::look(scene, spec, &embree) {
+                Ok(seen) => seen,
+                Err(error) => {
+                    let words = error.to_string();
+                    self.rows.fail("cover", "spec", "embree", None, words);
+                    return Ok(());
+                }
+            };
             self.shown("embree", spec, &seen.picture);
             let rays = Rays::new(scene, spec, &embree);
             self.sheets.push(rays.sheet(&seen));

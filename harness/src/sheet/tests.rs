@@ -205,7 +205,7 @@ fn embrees_sheet_has_its_hits_and_what_it_lacks() {
     );
     let run = run(&scene);
     let embree = EmbreeScene::new(&run.primitives).expect("a small scene");
-    let all = look(&scene, &run, &embree);
+    let all = look(&scene, &run, &embree).expect("Embree answers");
     assert_eq!((all.hits, all.pixels), (48, 12), "hidden ones too");
     let sheet = Rays::new(&scene, &run, &embree).sheet(&all);
     assert_eq!((sheet.stride, sheet.held, sheet.left_out), (1, 12, 0));

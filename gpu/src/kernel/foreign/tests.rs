@@ -78,7 +78,7 @@ fn what_differs_is_named() {
     let cases = [
         (
             neither,
-            "no entry point of stage build: build, build_fragment",
+            "stage build needs an entry point build or build_fragment",
         ),
         (
             changed("@workgroup_size(64)", "@workgroup_size(32)"),
