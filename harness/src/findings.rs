@@ -4,7 +4,7 @@
 //! mutant takes away what makes a kernel right ([`crate::mutants`]), on a scene that shows
 //! it. The drivers that it names must then diverge, in the stage and by the cause that it
 //! states; once one agrees, it has been fixed, and the finding is to be removed. All
-//! others must agree.
+//! others must agree, unless a rule allows what they do.
 
 use std::path::Path;
 
@@ -24,6 +24,9 @@ const FILE_MAX: u64 = 1 << 16;
 pub struct Finding {
     /// Parts of names of the adapters that do it, in any case.
     pub drivers: Vec<String>,
+    /// Whether a rule allows it, so that others may do it, too, and be right.
+    #[serde(default)]
+    pub allowed: bool,
     /// What they do, as `doctor` lists it.
     pub known: String,
     /// Why that follows, and how our kernels avoid it.
@@ -84,6 +87,7 @@ impl Finding {
                 "{leg} does not show {name} any more: the driver has been fixed; remove the \
                  finding corpus/{FINDINGS}/{name}"
             )),
+            (_, false) if self.allowed => None,
             (_, false) => Some(format!(
                 "{leg} shows {name}, too, and is none of its drivers: {note}"
             )),

@@ -30,6 +30,7 @@ fn every_finding_is_seen_where_it_says() {
         // not named, and shows it, is news.
         let turned = |drivers: &[&str]| Finding {
             drivers: drivers.iter().map(|d| (*d).to_owned()).collect(),
+            allowed: false,
             ..finding.clone()
         };
         let name = &finding.case.name;
@@ -48,6 +49,15 @@ fn every_finding_is_seen_where_it_says() {
             shows
         );
         assert_eq!(said.len(), agrees + shows, "{said:?}");
+        let lawful = Finding {
+            allowed: true,
+            ..turned(&["swiftshader"])
+        };
+        assert_eq!(
+            lawful.judge(&cells).len(),
+            agrees,
+            "no news where it is allowed"
+        );
     }
 }
 
