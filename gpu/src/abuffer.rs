@@ -2,6 +2,7 @@
 
 mod attempt;
 mod buffers;
+mod stages;
 mod timed;
 
 use std::time::Duration;
@@ -15,6 +16,7 @@ use crate::raster::{Attempts, Rasterizer};
 pub use attempt::STEPS;
 use attempt::{Done, Run, Tried};
 pub use buffers::PROGRESS;
+pub use stages::{Stage, Stages};
 pub use timed::{KEPT_MAX, Part, Timed, can_keep, with_layers};
 
 /// Another leg's results in place of the stages before one.

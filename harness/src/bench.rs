@@ -19,6 +19,7 @@ pub mod csv;
 pub mod error;
 mod gpu;
 mod grid;
+pub mod legs;
 pub mod machine;
 pub mod markdown;
 mod progress;

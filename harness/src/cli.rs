@@ -49,7 +49,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Measure: time against error, and what holds at the extremes
+    /// Measure: time against error, leg against leg, and what holds at the extremes
     #[command(subcommand)]
     Bench(bench::Bench),
     /// Put a scene into the corpus, replay it, and leave its snapshot for review

@@ -168,6 +168,19 @@ impl Setup {
         first_sample(low, bits, size.height)..first_sample(high + 1, bits, size.height)
     }
 
+    /// Columns whose samples lie in the triangle's width, or `beyond` sub-pixels outside.
+    pub fn columns(&self, beyond: i64, size: Size, bits: u32) -> Span {
+        let [low, high] = self.width();
+        let end = first_sample(high + beyond + 1, bits, size.width);
+        first_sample(low - beyond, bits, size.width)..end
+    }
+
+    /// The smallest and the largest x, in sub-pixels.
+    pub fn width(&self) -> [i64; 2] {
+        let x = self.corners.map(|c| c[0]);
+        [x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])]
+    }
+
     /// The covered columns of a row: a triangle is convex, so they are one span.
     /// Each edge function is linear in the column, which gives a bound a piece.
     pub fn span(&self, row: u32, size: Size, bits: u32) -> Span {
@@ -211,7 +224,10 @@ pub fn cover_only(
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };
-        // Most triangles of a fine mesh never need it.
+        // Many triangles of a fine mesh lie between two columns.
+        if setup.columns(0, size, bits).is_empty() {
+            continue;
+        }
         let mut step = None;
         for row in setup.rows(size, bits) {
             let span = setup.span(row, size, bits);
@@ -234,6 +250,7 @@ pub fn cover_only(
                     mask: 1,
                 });
                 if x + 1 < end {
+                    // Most triangles of a fine mesh never need it.
                     let step = *step.get_or_insert_with(|| setup.depth_step(bits));
                     depth = depth.plus(step, setup.area);
                 }
@@ -268,7 +285,7 @@ fn edge(a: [i64; 3], b: [i64; 3], [x, y]: [i64; 2]) -> i64 {
 
 /// The first pixel whose sample lies at or after a coordinate, within the target.
 fn first_sample(coordinate: i64, bits: u32, side: u32) -> u32 {
-    let pixel = div_ceil(coordinate - (1 << (bits - 1)), 1 << bits);
+    let pixel = -(((1 << (bits - 1)) - coordinate) >> bits);
     column(pixel.clamp(0, i64::from(side)))
 }
 

@@ -85,12 +85,12 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
 }
 
 /// Six digits behind the point tell nanoseconds apart.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     format!("{value:.6}")
 }
 
 /// Names of scenes come from folders, which may be called anything.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_owned(),

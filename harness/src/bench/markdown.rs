@@ -1,7 +1,7 @@
 //! A run as a page that can be committed beside others.
 
 use super::table::{COLUMNS, ceiling, cells, heading};
-use super::{Bench, WARM_UP};
+use super::{Bench, Machine, WARM_UP};
 use crate::text::clean;
 
 impl Bench {
@@ -14,21 +14,11 @@ impl Bench {
 
 /// The page, which shows the front of the same stem.
 pub fn page(bench: &Bench) -> String {
-    let Bench { date, machine, .. } = bench;
     let mut lines = vec![
-        format!("# Time against error: A-buffer, {date}"),
+        format!("# Time against error: A-buffer, {}", bench.date),
         String::new(),
-        format!(
-            "- {}, {} cores, {}",
-            text(&machine.cpu),
-            machine.cores,
-            machine.system
-        ),
-        format!("- {}", machine.version),
     ];
-    for (name, facts) in &machine.adapters {
-        lines.push(format!("- {}: {}", text(name), text(facts)));
-    }
+    lines.extend(machine(&bench.machine));
     lines.extend(
         bench
             .ceilings
@@ -56,6 +46,18 @@ pub fn page(bench: &Bench) -> String {
     lines.join("\n")
 }
 
+/// Where a run took place, as items of a list.
+pub(super) fn machine(machine: &Machine) -> Vec<String> {
+    let Machine { cores, system, .. } = machine;
+    let mut lines = vec![
+        format!("- {}, {cores} cores, {system}", text(&machine.cpu)),
+        format!("- {}", machine.version),
+    ];
+    let adapter = |(name, facts): &(String, String)| format!("- {}: {}", text(name), text(facts));
+    lines.extend(machine.adapters.iter().map(adapter));
+    lines
+}
+
 fn how(bench: &Bench) -> String {
     format!(
         "Medians of {} rounds after {WARM_UP} to warm up, with minimum and maximum; every round \
@@ -73,7 +75,7 @@ fn how(bench: &Bench) -> String {
 }
 
 /// Untrusted text in a cell.
-fn text(untrusted: &str) -> String {
+pub(super) fn text(untrusted: &str) -> String {
     let mut text = String::new();
     for c in clean(untrusted).chars() {
         if "|\\`*_<>[]#&".contains(c) && !"_#".contains(c) {

@@ -39,7 +39,7 @@ pub fn cells(row: &Row) -> [String; COLUMNS.len()] {
 }
 
 /// `median [min, max]`.
-fn spread(of: Spread, scale: f64, digits: usize) -> String {
+pub(super) fn spread(of: Spread, scale: f64, digits: usize) -> String {
     let [median, min, max] = [of.median, of.min, of.max].map(|v| v * scale);
     format!("{median:.digits$} [{min:.digits$}, {max:.digits$}]")
 }
@@ -81,18 +81,30 @@ pub fn lines(bench: &Bench) -> Vec<String> {
         let rows = bench.fastest().filter(|row| row.scene == scene);
         let mut table = vec![COLUMNS.map(str::to_owned)];
         table.extend(rows.map(cells));
-        let width = |column: usize| {
-            let cells = table.iter().map(|cells| cells[column].chars().count());
-            cells.max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
-        for cells in &table {
-            let mut line = format!("  {:<1$}", cells[0], widths[0]);
-            for (cell, width) in cells.iter().zip(&widths).skip(1) {
-                line.push_str(&format!("  {cell:>width$}"));
-            }
-            lines.push(line);
-        }
+        lines.extend(aligned(&table, 1));
     }
     lines
+}
+
+/// A table in columns as wide as their cells; the first `names` are words, the others
+/// numbers.
+pub(super) fn aligned<const N: usize>(
+    table: &[[String; N]],
+    names: usize,
+) -> impl Iterator<Item = String> {
+    let width = |column: usize| {
+        let cells = table.iter().map(|cells| cells[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..N).map(width).collect();
+    table.iter().map(move |cells| {
+        let mut line = String::new();
+        for (column, (cell, width)) in cells.iter().zip(&widths).enumerate() {
+            line += &match column < names {
+                true => format!("  {cell:<width$}"),
+                false => format!("  {cell:>width$}"),
+            };
+        }
+        line
+    })
 }

@@ -1,6 +1,7 @@
 //! `triptych bench`.
 
 pub(super) mod abuffer;
+mod legs;
 mod stress;
 
 use super::Verdict;
@@ -10,6 +11,8 @@ use super::Verdict;
 pub enum Bench {
     /// Time against error: the nearest 1, 2, 4, … layers of each pixel
     Abuffer(abuffer::Args),
+    /// Leg against leg: the spec beside adapters, the Embree leg beside bare calls
+    Legs(legs::Args),
     /// What holds at the extremes, and by how much
     #[command(long_flag = "stress")]
     Stress(stress::Args),
@@ -18,6 +21,7 @@ pub enum Bench {
 pub fn run(bench: &Bench) -> anyhow::Result<Verdict> {
     match bench {
         Bench::Abuffer(args) => abuffer::run(args),
+        Bench::Legs(args) => legs::run(args),
         Bench::Stress(args) => stress::run(args),
     }
 }

@@ -26,6 +26,7 @@
 
 mod band;
 mod edge;
+mod known;
 mod order;
 mod pair;
 mod pairs;
@@ -39,15 +40,17 @@ use triptych_spec::vertex::Primitives;
 
 use crate::embree::world::World;
 use crate::embree::{EmbreeError, RayHits, ScreenHits};
+use band::judge;
+use known::Shares;
 pub use pair::{DepthPair, Pair, pair};
 use pairs::Pairs;
 use screen::Screen;
 pub use vote::{Conflict, Disagreement, EmbreeVote};
 use world::InWorld;
 
-/// Rows of pixels that one task works through. Memory is proportional to the
-/// triangles that meet a band; the result does not depend on it.
-const BAND: u32 = 8;
+/// Rows of pixels that one task works through. Memory is proportional to the pairs in a
+/// band; the result does not depend on it.
+pub(crate) const BAND: u32 = 8;
 
 /// Compares the spec's coverage of `spec` with what Embree reports of the same triangles.
 ///
@@ -76,12 +79,13 @@ pub fn compare_world<E: RayHits>(
 /// Deterministic: bands are independent, and summed in order.
 fn in_bands<P: Pairs, E: RayHits>(pairs: &P, embree: &E) -> Result<EmbreeVote, EmbreeError> {
     let height = pairs.size().height;
-    let rows = band::rows(pairs);
+    let shares = Shares::new(pairs, BAND);
     let bands: Vec<Result<EmbreeVote, EmbreeError>> = (0..height.div_ceil(BAND))
         .into_par_iter()
         .map(|band| {
             let first = band * BAND;
-            band::judge(pairs, embree, &rows, first..(first + BAND).min(height))
+            let rows = first..(first + BAND).min(height);
+            judge(pairs, embree, &shares, band as usize, rows)
         })
         .collect();
     let mut total = EmbreeVote::default();

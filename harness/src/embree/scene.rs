@@ -1,20 +1,14 @@
 //! Snapped triangles as an Embree scene, and all hits of a ray.
 
-use std::ffi::c_void;
-
-use embree4_rs::geometry::TriangleMeshGeometry;
-use embree4_rs::{CommittedScene, Device, Scene, SceneOptions};
-use embree4_sys::{
-    RTC_INVALID_GEOMETRY_ID, RTCBuildQuality, RTCFeatureFlags, RTCFilterFunctionNArguments, RTCHit,
-    RTCIntersectArguments, RTCRay, RTCRayQueryContext, RTCRayQueryFlags, RTCSceneFlags,
-};
+use embree4_sys::RTCRay;
 use triptych_spec::raster::sample;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{Primitives, SUBPIXEL_BITS};
 
 use super::EmbreeError;
+use super::bare::Bare;
 
-/// How the device is configured; the wrapper passes it on without adding a NUL.
+/// How the device is configured, with the NUL that ends it.
 ///
 /// SSE2 is part of x86-64 and of every build of Embree for it, so the same code
 /// runs on any machine (Embree's results depend on the instruction set: its
@@ -35,14 +29,34 @@ pub struct Hit {
     pub t: f32,
 }
 
+impl Hit {
+    /// A number in the order of `(prim, t)`, of t that of [`f32::total_cmp`]: one comparison
+    /// instead of two.
+    fn place(&self) -> u64 {
+        let bits = self.t.to_bits();
+        let t = match self.t.is_sign_negative() {
+            true => !bits,
+            false => bits | 1 << 31,
+        };
+        u64::from(self.prim) << 32 | u64::from(t)
+    }
+}
+
 /// An observation by rays through samples: Embree's, or a test's corruption of it.
 pub trait RayHits: Sync {
     /// Replaces `hits` by every hit of the ray through a pixel's sample, in order of
     /// `(prim, t)`; a triangle may be reported more than once.
     ///
     /// # Errors
-    /// If Embree reports one.
+    /// A pixel that is not there, or a hit that Embree kept to itself.
     fn hits(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError>;
+
+    /// Asks whether all rays of this thread went well; to be asked once after many, as it
+    /// takes its time.
+    ///
+    /// # Errors
+    /// What Embree has to report since this was last asked.
+    fn check(&self) -> Result<(), EmbreeError>;
 }
 
 /// An observation in screen space.
@@ -61,6 +75,8 @@ pub trait ScreenHits: RayHits {
 pub struct Depth {
     base: i64,
     scale: f64,
+    /// Its reciprocal: both are powers of two, so products with either are exact.
+    inverse: f64,
 }
 
 impl Depth {
@@ -69,22 +85,27 @@ impl Depth {
         let (near, far) = (keys().min().unwrap_or(0), keys().max().unwrap_or(0));
         let free = (far - near) / 8 + 1;
         let bits = (far - near + free).ilog2();
+        let scale = f64::from(1_u32 << bits.saturating_sub(20));
         Self {
             base: near - free,
-            scale: f64::from(1_u32 << bits.saturating_sub(20)),
+            scale,
+            inverse: 1.0 / scale,
         }
     }
 
     /// Embree's z of a corner. Rounds once; scaling by a power of two is exact.
     pub fn z(&self, key: i32) -> f32 {
-        #[expect(clippy::cast_possible_truncation, reason = "a power of two below 2^13")]
-        let scale = self.scale as f32;
-        (i64::from(key) - self.base) as f32 / scale
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a power of two above 2^-13"
+        )]
+        let inverse = self.inverse as f32;
+        (i64::from(key) - self.base) as f32 * inverse
     }
 
     /// A corner's z before rounding.
     pub fn exact_z(&self, key: i32) -> f64 {
-        (i64::from(key) - self.base) as f64 / self.scale
+        (i64::from(key) - self.base) as f64 * self.inverse
     }
 
     /// The depth key, as a real number, at a distance along the ray.
@@ -101,7 +122,7 @@ impl Depth {
 /// The spec's snapped triangles, committed to Embree.
 pub struct EmbreeScene {
     /// Absent if there are no triangles: Embree refuses empty buffers.
-    scene: Option<CommittedScene>,
+    scene: Option<Bare>,
     depth: Depth,
     size: Size,
     bits: u32,
@@ -120,10 +141,9 @@ impl EmbreeScene {
         let scene = if primitives.prims.is_empty() {
             None
         } else {
-            let corner = |&[x, y, z]: &[i32; 3]| (x as f32, y as f32, depth.z(z));
+            let corner = |&[x, y, z]: &[i32; 3]| [x as f32, y as f32, depth.z(z)];
             let corners: Vec<_> = primitives.snapped.iter().map(corner).collect();
-            let prims = primitives.prims.iter().map(|prim| (*prim).into());
-            Some(commit(&corners, &prims.collect::<Vec<_>>())?)
+            Some(Bare::new(&corners, &primitives.prims)?)
         };
         Ok(Self {
             scene,
@@ -132,9 +152,28 @@ impl EmbreeScene {
             bits: primitives.bits,
         })
     }
+
+    /// One call of Embree and nothing else: every hit of the ray through a pixel's sample is
+    /// added to `hits`, in no order. False if a hit went past the filter.
+    pub fn bare(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> bool {
+        let Some(scene) = &self.scene else {
+            return true;
+        };
+        scene.trace(self.ray(column, row), hits)
+    }
+
+    fn ray(&self, column: u32, row: u32) -> RTCRay {
+        let [x, y] = [column, row].map(|pixel| sample(pixel, self.bits) as f32);
+        RTCRay {
+            org_x: x,
+            org_y: y,
+            dir_z: 1.0,
+            ..RTCRay::default()
+        }
+    }
 }
 
-/// What makes the exactness claims of [`super::bound`] true, and Embree's reads safe.
+/// What makes the exactness claims of [`super::bound`] true.
 fn check(primitives: &Primitives) -> Result<(), EmbreeError> {
     let step = "check of the triangles";
     if !(1..=SUBPIXEL_BITS).contains(&primitives.bits) {
@@ -143,44 +182,14 @@ fn check(primitives: &Primitives) -> Result<(), EmbreeError> {
     }
     let reach = -COORDINATE_MAX..=COORDINATE_MAX;
     let far = |c: &&[i32; 3]| !(reach.contains(&c[0]) && reach.contains(&c[1]));
-    if let Some(corner) = primitives.snapped.iter().find(far) {
-        let reason = format!("corner {corner:?} lies beyond the guard rectangle");
-        return Err(EmbreeError::new(step, reason));
-    }
-    let corners = primitives.snapped.len();
-    let missing = primitives
-        .prims
+    primitives
+        .snapped
         .iter()
-        .flatten()
-        .find(|&&c| c as usize >= corners);
-    missing.map_or(Ok(()), |c| {
-        Err(EmbreeError::new(
-            step,
-            format!("no corner {c}, there are {corners}"),
-        ))
-    })
-}
-
-/// Hands triangles to Embree: robust mode, filter in the arguments, medium quality (high
-/// quality may report a triangle of several leaves several times). The corners that
-/// `prims` names must be there.
-pub(super) fn commit(
-    corners: &[(f32, f32, f32)],
-    prims: &[(u32, u32, u32)],
-) -> Result<CommittedScene, EmbreeError> {
-    let options = SceneOptions {
-        build_quality: RTCBuildQuality::MEDIUM,
-        flags: RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS,
-    };
-    let failed = |step| move |e| EmbreeError::new(step, e);
-    let device = Device::try_new(Some(CONFIG)).map_err(failed("new device"))?;
-    let mesh = TriangleMeshGeometry::try_new(&device, corners, prims)
-        .map_err(failed("copy of the triangles"))?;
-    let scene = Scene::try_new(device, options).map_err(failed("new scene"))?;
-    scene
-        .attach_geometry(&mesh)
-        .map_err(failed("attaching the triangles"))?;
-    scene.commit().map_err(failed("building the tree"))
+        .find(far)
+        .map_or(Ok(()), |corner| {
+            let reason = format!("corner {corner:?} lies beyond the guard rectangle");
+            Err(EmbreeError::new(step, reason))
+        })
 }
 
 impl ScreenHits for EmbreeScene {
@@ -198,78 +207,40 @@ impl RayHits for EmbreeScene {
         let Some(scene) = &self.scene else {
             return Ok(());
         };
-        let [x, y] = [column, row].map(|pixel| sample(pixel, self.bits) as f32);
-        let ray = RTCRay {
-            org_x: x,
-            org_y: y,
-            dir_z: 1.0,
-            ..RTCRay::default()
-        };
-        collect(scene, ray, hits)
+        collect(scene, self.ray(column, row), hits)
     }
-}
 
-/// A query context with the vector that the filter fills.
-///
-/// Embree passes the pointer through, so a context may be longer than Embree
-/// knows. `instance_primitive` is a field that newer headers than embree4-sys's
-/// have in the context (`instPrimID`): the library reads it.
-#[repr(C)]
-struct Collector<'a> {
-    context: RTCRayQueryContext,
-    instance_primitive: u32,
-    hits: &'a mut Vec<Hit>,
+    fn check(&self) -> Result<(), EmbreeError> {
+        self.scene.as_ref().map_or(Ok(()), Bare::check)
+    }
 }
 
 /// Every hit of one ray, in order of `(prim, t)`.
-pub(super) fn collect(
-    scene: &CommittedScene,
-    ray: RTCRay,
-    hits: &mut Vec<Hit>,
-) -> Result<(), EmbreeError> {
-    let mut collector = Collector {
-        context: RTCRayQueryContext {
-            instID: [RTC_INVALID_GEOMETRY_ID],
-        },
-        instance_primitive: RTC_INVALID_GEOMETRY_ID,
-        hits,
-    };
-    let arguments = RTCIntersectArguments {
-        flags: RTCRayQueryFlags::INVOKE_ARGUMENT_FILTER,
-        feature_mask: RTCFeatureFlags(u32::MAX), // all: the default of Embree's initialiser
-        context: (&raw mut collector).cast(),
-        filter: Some(keep_and_reject),
-        intersect: None,
-    };
-    // Every hit is rejected, so Embree never writes one into the wrapper's
-    // `RTCRayHit`, whose type is 16 bytes shorter than the newer library's.
-    let closest = scene
-        .intersect_1(ray, Some(&arguments))
-        .map_err(|e| EmbreeError::new("ray", e))?;
-    if closest.is_some() {
+pub(super) fn collect(scene: &Bare, ray: RTCRay, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
+    if !scene.trace(ray, hits) {
         return Err(EmbreeError::new("ray", "a hit went past the filter"));
     }
-    hits.sort_unstable_by(|a, b| a.prim.cmp(&b.prim).then(a.t.total_cmp(&b.t)));
+    hits.sort_unstable_by_key(Hit::place);
     Ok(())
 }
 
-/// The filter: notes the hit and rejects it, so that the ray goes on.
-#[expect(unsafe_code, reason = "called by Embree with raw pointers")]
-unsafe extern "C" fn keep_and_reject(arguments: *const RTCFilterFunctionNArguments) {
-    // SAFETY: Embree calls this inside `intersect_1` with valid pointers and N = 1,
-    // for which ray and hit have the layout of the single structures (the fields
-    // read here lie at the same place in every Embree 4). The context is the
-    // `Collector` that `collect` borrows mutably for the length of that call, on
-    // this thread alone.
-    unsafe {
-        let arguments = &*arguments;
-        let collector = &mut *arguments.context.cast::<Collector<'_>>();
-        let hit = arguments.hit.cast::<c_void>().cast::<RTCHit>();
-        let ray = arguments.ray.cast::<c_void>().cast::<RTCRay>();
-        collector.hits.push(Hit {
-            prim: (*hit).primID,
-            t: (*ray).tfar,
-        });
-        *arguments.valid = 0;
+#[cfg(test)]
+mod tests {
+    use super::Hit;
+
+    #[test]
+    fn places_are_in_order_of_triangle_and_distance() {
+        let all = [
+            f32::NEG_INFINITY,
+            -1.0,
+            -0.0,
+            0.0,
+            f32::MIN_POSITIVE,
+            2.0,
+            f32::NAN,
+        ];
+        let hits = [0, 1, u32::MAX].map(|prim| all.map(|t| Hit { prim, t }));
+        let places: Vec<u64> = hits.iter().flatten().map(Hit::place).collect();
+        assert!(places.is_sorted_by(|a, b| a < b), "{places:?}");
     }
 }

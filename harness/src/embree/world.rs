@@ -2,12 +2,12 @@
 
 pub mod bound;
 
-use embree4_rs::CommittedScene;
 use embree4_sys::RTCRay;
 use triptych_spec::scene::Scene;
 
 use super::EmbreeError;
-use super::scene::{Hit, RayHits, collect, commit};
+use super::bare::Bare;
+use super::scene::{Hit, RayHits, collect};
 use super::view::View;
 
 /// World space as Embree has it: a power of two brings all coordinates below 1, which
@@ -46,7 +46,7 @@ impl World {
 /// A scene's triangles, committed to Embree.
 pub struct WorldScene {
     /// Absent if there are no triangles: Embree refuses empty buffers.
-    scene: Option<CommittedScene>,
+    scene: Option<Bare>,
     view: View,
     scale: f64,
 }
@@ -57,11 +57,9 @@ impl WorldScene {
     /// # Errors
     /// If Embree reports an error.
     pub fn new(scene: &Scene, world: &World) -> Result<Self, EmbreeError> {
-        let corner = |p: &[f64; 3]| p.map(single).into();
-        let corners: Vec<(f32, f32, f32)> = world.points.iter().map(corner).collect();
-        let prims = scene.triangles.iter().map(|t| t.vertices.into());
-        let prims: Vec<(u32, u32, u32)> = prims.collect();
-        let committed = (!prims.is_empty()).then(|| commit(&corners, &prims));
+        let corners: Vec<[f32; 3]> = world.points.iter().map(|p| p.map(single)).collect();
+        let prims: Vec<[u32; 3]> = scene.triangles.iter().map(|t| t.vertices).collect();
+        let committed = (!prims.is_empty()).then(|| Bare::new(&corners, &prims));
         Ok(Self {
             scene: committed.transpose()?,
             view: world.view,
@@ -92,6 +90,10 @@ impl RayHits for WorldScene {
             ..RTCRay::default()
         };
         collect(scene, ray, hits)
+    }
+
+    fn check(&self) -> Result<(), EmbreeError> {
+        self.scene.as_ref().map_or(Ok(()), Bare::check)
     }
 }
 

@@ -153,19 +153,19 @@ impl Args {
     }
 }
 
-fn write(file: &FilePath, text: &str) -> std::io::Result<()> {
+pub(super) fn write(file: &FilePath, text: &str) -> std::io::Result<()> {
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder)?;
     }
     std::fs::write(file, text)
 }
 
-fn reports() -> PathBuf {
+pub(super) fn reports() -> PathBuf {
     corpus::root().with_file_name("reports").join("out")
 }
 
 /// Where the results of a run go, in the folder of the report.
-fn folder(out: &FilePath) -> PathBuf {
+pub(super) fn folder(out: &FilePath) -> PathBuf {
     out.join("bench")
 }
 

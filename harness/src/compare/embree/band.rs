@@ -1,30 +1,13 @@
 //! Judging the pairs of a band of rows, pixel by pixel, whatever space they are in.
 
-use rayon::prelude::*;
 use triptych_spec::raster::Span;
 
+use super::known::{Band, Known, Shares};
 use super::order::{self, Seen};
 use super::pair::{DepthPair, Pair};
 use super::pairs::{Expected, Pairs};
 use super::vote::{Conflict, Disagreement, EmbreeVote};
 use crate::embree::{EmbreeError, Hit, RayHits};
-
-/// A triangle that may make pairs in the band.
-struct Candidate<P: Pairs> {
-    prim: u32,
-    triangle: P::Candidate,
-    rows: Span,
-}
-
-/// The columns of a row where a candidate makes a pair.
-#[derive(Clone)]
-struct Reach<R> {
-    start: u32,
-    end: u32,
-    row: R,
-    /// Number of the candidate; they are in order of `prim`.
-    candidate: usize,
-}
 
 struct Sweep<'a, P, E> {
     pairs: &'a P,
@@ -34,20 +17,15 @@ struct Sweep<'a, P, E> {
     seen: Vec<Seen>,
 }
 
-/// The rows in which each triangle makes pairs.
-pub(super) fn rows(pairs: &impl Pairs) -> Vec<Span> {
-    let all = (0..pairs.count()).into_par_iter();
-    all.map(|prim| pairs.rows(prim)).collect()
-}
-
-/// Compares the rows `band`; `rows` is what [`rows`] says of the triangles.
+/// Compares the rows `rows`, which are band `band` of those that `shares` is of.
 pub(super) fn judge<P: Pairs, E: RayHits>(
     pairs: &P,
     embree: &E,
-    rows: &[Span],
-    band: Span,
+    shares: &Shares,
+    band: usize,
+    rows: Span,
 ) -> Result<EmbreeVote, EmbreeError> {
-    let candidates = candidates(pairs, rows, &band);
+    let known = Band::new(pairs, shares, band, &rows);
     let mut sweep = Sweep {
         pairs,
         embree,
@@ -55,91 +33,37 @@ pub(super) fn judge<P: Pairs, E: RayHits>(
         hits: Vec::new(),
         seen: Vec::new(),
     };
-    for row in band {
-        sweep.row(row, &candidates)?;
+    let columns = 0..pairs.size().width;
+    let pixels = rows.flat_map(|row| columns.clone().map(move |column| [column, row]));
+    for (number, pixel) in pixels.enumerate() {
+        sweep.pixel(pixel, known.of(number))?;
     }
+    embree.check()?;
     Ok(sweep.vote)
 }
 
-/// Triangles that reach one of the band's rows.
-fn candidates<P: Pairs>(pairs: &P, rows: &[Span], band: &Span) -> Vec<Candidate<P>> {
-    let meets = |rows: &Span| rows.start < band.end && band.start < rows.end;
-    let candidate = |(prim, rows): (u32, &Span)| Candidate {
-        prim,
-        triangle: pairs.candidate(prim),
-        rows: rows.clone(),
-    };
-    let all = (0_u32..).zip(rows).filter(|(_, rows)| meets(rows));
-    all.map(candidate).collect()
-}
-
 impl<P: Pairs, E: RayHits> Sweep<'_, P, E> {
-    /// Sweeps a row from left to right. `active` holds the candidates that make a
-    /// pair with the current pixel, in order of `prim`.
-    fn row(&mut self, row: u32, candidates: &[Candidate<P>]) -> Result<(), EmbreeError> {
-        let reaches = self.reaches(row, candidates);
-        let mut coming = reaches.into_iter().peekable();
-        let mut active: Vec<Reach<P::Row>> = Vec::new();
-        for column in 0..self.pairs.size().width {
-            active.retain(|reach| reach.end > column);
-            let known = active.len();
-            while let Some(reach) = coming.next_if(|reach| reach.start == column) {
-                active.push(reach);
-            }
-            if active.len() > known {
-                active.sort_unstable_by_key(|reach| reach.candidate);
-            }
-            self.pixel(column, row, candidates, &active)?;
-        }
-        Ok(())
-    }
-
-    /// Where the candidates are covered or near an edge, from left to right.
-    fn reaches(&mut self, row: u32, candidates: &[Candidate<P>]) -> Vec<Reach<P::Row>> {
-        let mut reaches = Vec::new();
-        for (candidate, c) in candidates.iter().enumerate() {
-            if c.rows.contains(&row) {
-                let (span, prepared) = self.pairs.reach(&c.triangle, row);
-                if !span.is_empty() {
-                    reaches.push(Reach {
-                        start: span.start,
-                        end: span.end,
-                        row: prepared,
-                        candidate,
-                    });
-                }
-            }
-        }
-        reaches.sort_unstable_by_key(|reach| (reach.start, reach.candidate));
-        reaches
-    }
-
-    /// Joins the active candidates with Embree's hits; both are in order of `prim`.
-    fn pixel(
+    /// Joins what is known with Embree's hits; both are in order of `prim`.
+    fn pixel<'k>(
         &mut self,
-        column: u32,
-        row: u32,
-        candidates: &[Candidate<P>],
-        active: &[Reach<P::Row>],
+        pixel: [u32; 2],
+        known: impl Iterator<Item = &'k Known>,
     ) -> Result<(), EmbreeError> {
         let mut hits = std::mem::take(&mut self.hits);
-        self.embree.hits(column, row, &mut hits)?;
+        self.embree.hits(pixel[0], pixel[1], &mut hits)?;
         let reported = hits.len();
         hits.dedup_by_key(|hit| hit.prim);
         self.vote.repeated += (reported - hits.len()) as u64;
         self.vote.rays += 1;
         self.seen.clear();
 
-        let pixel = [column, row];
         let mut unjoined = hits.iter().peekable();
-        for reach in active {
-            let c = &candidates[reach.candidate];
-            while let Some(stray) = unjoined.next_if(|hit| hit.prim < c.prim) {
+        for Known { prim, expected } in known {
+            while let Some(stray) = unjoined.next_if(|hit| hit.prim < *prim) {
                 self.stray(pixel, *stray);
             }
-            let t = unjoined.next_if(|hit| hit.prim == c.prim).map(|hit| hit.t);
-            let expected = self.pairs.expect(&c.triangle, &reach.row, pixel);
-            self.pair(pixel, c.prim, expected, t);
+            let t = unjoined.next_if(|hit| hit.prim == *prim).map(|hit| hit.t);
+            self.pair(pixel, *prim, *expected, t);
         }
         for stray in unjoined {
             self.stray(pixel, *stray);

@@ -16,11 +16,11 @@ pub(super) trait Pairs: Sync {
     /// Number of triangles.
     fn count(&self) -> u32;
 
-    /// Rows in which a triangle makes pairs.
-    fn rows(&self, prim: u32) -> Span;
-
-    /// Prepares a triangle.
+    /// Prepares a triangle, no more than [`Self::reach`] needs: most make no pair.
     fn candidate(&self, prim: u32) -> Self::Candidate;
+
+    /// Rows in which a triangle may make pairs.
+    fn rows(&self, triangle: &Self::Candidate) -> Span;
 
     /// The columns of a row in which a triangle makes pairs: where it is covered, or in
     /// class edge.

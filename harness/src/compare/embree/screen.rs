@@ -1,5 +1,7 @@
 //! Pairs in screen space: the spec's snapped triangles, parallel rays.
 
+use std::cell::OnceCell;
+
 use triptych_spec::raster::{Setup, Span, sample};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
@@ -19,7 +21,43 @@ pub(super) struct Screen<'a> {
 pub(super) struct Candidate {
     prim: u32,
     setup: Option<Setup>,
-    triangle: Triangle,
+    rows: Span,
+    columns: Span,
+    /// What Embree makes of it; for its first pair.
+    triangle: OnceCell<Triangle>,
+}
+
+impl Screen<'_> {
+    /// The rows and columns outside of which a triangle makes no pair.
+    ///
+    /// Where no edge function is below [`least`], barycentric coordinates are at least
+    /// least / area: that is the triangle scaled about its centre by 1 - 3 least / area. A
+    /// corner lies at most two thirds of the width from there.
+    fn extent(&self, setup: &Setup) -> [Span; 2] {
+        let Primitives { size, bits, .. } = *self.spec;
+        let rows = setup.rows(size, bits);
+        if rows.is_empty() {
+            return [0..0, 0..0];
+        }
+        let [low, high] = setup.width();
+        let beyond = -2 * least(setup) * (high - low) / setup.area + 1;
+        let columns = setup.columns(beyond, size, bits);
+        // Most triangles of a fine mesh have one sample about, and miss it.
+        let single = rows.len() == 1 && columns.len() == 1;
+        if columns.is_empty() || single && !self.meets(setup, columns.start, rows.start) {
+            return [0..0, 0..0];
+        }
+        [rows, columns]
+    }
+
+    /// Whether a pixel and a triangle make a pair.
+    fn meets(&self, setup: &Setup, column: u32, row: u32) -> bool {
+        let point = [column, row].map(|pixel| sample(pixel, self.spec.bits));
+        setup
+            .edges(point)
+            .into_iter()
+            .all(|edge| edge >= least(setup))
+    }
 }
 
 impl Pairs for Screen<'_> {
@@ -34,29 +72,35 @@ impl Pairs for Screen<'_> {
         u32::try_from(self.spec.prims.len()).expect("Embree has accepted them")
     }
 
-    fn rows(&self, prim: u32) -> Span {
-        let Primitives { size, bits, .. } = *self.spec;
-        Setup::new(self.spec, prim).map_or(0..0, |setup| setup.rows(size, bits))
-    }
-
     fn candidate(&self, prim: u32) -> Candidate {
+        let setup = Setup::new(self.spec, prim);
+        let [rows, columns] = setup.as_ref().map_or([0..0, 0..0], |s| self.extent(s));
         Candidate {
             prim,
-            setup: Setup::new(self.spec, prim),
-            triangle: Triangle::new(self.spec, &self.depth, prim),
+            setup,
+            rows,
+            columns,
+            triangle: OnceCell::new(),
         }
+    }
+
+    fn rows(&self, triangle: &Candidate) -> Span {
+        triangle.rows.clone()
     }
 
     fn reach(&self, triangle: &Candidate, row: u32) -> (Span, ()) {
         let Some(setup) = &triangle.setup else {
             return (0..0, ());
         };
-        // With E the least edge function, negative, the sum of all is at
-        // most area + 4 |E|, so class edge ends at |E| = area 2^-22
-        // (1 + 2^-19), which is below this as area is at most 2^40.
-        let least = -(setup.area >> EDGE_BITS) - 3;
         let Primitives { size, bits, .. } = *self.spec;
-        (setup.span_above([least; 3], row, size, bits), ())
+        // One sample is tested without a division.
+        let columns = triangle.columns.clone();
+        let span = match columns.len() {
+            1 if self.meets(setup, columns.start, row) => columns,
+            1 => 0..0,
+            _ => setup.span_above([least(setup); 3], row, size, bits),
+        };
+        (span, ())
     }
 
     fn expect(&self, triangle: &Candidate, (): &(), [column, row]: [u32; 2]) -> Expected {
@@ -69,7 +113,9 @@ impl Pairs for Screen<'_> {
         let class = if is_edge(edges) {
             Class::Edge
         } else {
-            match (triangle.triangle.promise(point), covering) {
+            let prepared = || Triangle::new(self.spec, &self.depth, triangle.prim);
+            let promise = triangle.triangle.get_or_init(prepared).promise(point);
+            match (promise, covering) {
                 (Promise::Unresolved, _) => Class::Unresolved,
                 (Promise::Hit { bound }, Some(setup)) => Class::Judged {
                     // The key is the floor of the exact depth: one key more on that side.
@@ -87,4 +133,11 @@ impl Pairs for Screen<'_> {
     fn key(&self, t: f32) -> f64 {
         self.depth.key(t)
     }
+}
+
+/// No edge function is below this in class edge. With E the least of them, negative, the sum
+/// of all is at most area + 4 |E|, so class edge ends at |E| = area 2^-22 (1 + 2^-19), which
+/// is less as area is at most 2^40.
+fn least(setup: &Setup) -> i64 {
+    -(setup.area >> EDGE_BITS) - 3
 }

@@ -98,13 +98,13 @@ impl Pairs for InWorld<'_> {
         u32::try_from(self.regions.len()).expect("a scene has fewer than 2^32 triangles")
     }
 
-    fn rows(&self, prim: u32) -> Span {
-        let region = self.regions[prim as usize].as_ref();
-        region.map_or(0..0, |region| region.rows(self.scene.size))
-    }
-
     fn candidate(&self, prim: u32) -> u32 {
         prim
+    }
+
+    fn rows(&self, prim: &u32) -> Span {
+        let region = self.regions[*prim as usize].as_ref();
+        region.map_or(0..0, |region| region.rows(self.scene.size))
     }
 
     fn reach(&self, prim: &u32, row: u32) -> (Span, Columns) {

@@ -1,0 +1,100 @@
+//! Rows as a page that can be committed, and as comma-separated values.
+
+use super::super::csv::{number, quoted};
+use super::super::markdown::text;
+use super::super::{WARM_UP, markdown};
+use super::table::{COLUMNS, cells, verdict};
+use super::{Legs, Row};
+
+/// The columns of the file of values. Times are in milliseconds; a ratio is of the time of
+/// an item; what is not demanded is empty.
+const VALUES: [&str; 15] = [
+    "scene",
+    "what",
+    "items",
+    "leg",
+    "runs",
+    "clock",
+    "time_ms",
+    "time_ms_min",
+    "time_ms_max",
+    "items_per_second",
+    "against",
+    "ratio",
+    "ratio_min",
+    "ratio_max",
+    "at_most",
+];
+
+impl Legs {
+    /// The stem of both files: date and machine.
+    pub fn stem(&self) -> String {
+        format!("legs-{}-{}", self.date, self.machine.slug)
+    }
+}
+
+/// The whole file, with a header.
+pub fn csv(legs: &Legs) -> String {
+    let mut text = VALUES.join(",") + "\n";
+    for row in &legs.rows {
+        text += &(values(row, legs.runs).join(",") + "\n");
+    }
+    text
+}
+
+fn values(row: &Row, runs: u32) -> [String; VALUES.len()] {
+    let against = row.against.as_ref();
+    let ratio = |of: fn(&super::Spread) -> f64| {
+        against.map_or_else(String::new, |against| number(of(&against.ratio)))
+    };
+    [
+        quoted(&row.scene),
+        row.what.to_owned(),
+        row.items.to_string(),
+        quoted(&row.leg),
+        runs.to_string(),
+        row.clock.to_owned(),
+        number(row.time.median),
+        number(row.time.min),
+        number(row.time.max),
+        format!("{:.0}", row.rate()),
+        against.map_or_else(String::new, |against| quoted(&against.leg)),
+        ratio(|r| r.median),
+        ratio(|r| r.min),
+        ratio(|r| r.max),
+        against
+            .and_then(|against| against.most)
+            .map_or_else(String::new, |most| most.to_string()),
+    ]
+}
+
+/// The page.
+pub fn page(legs: &Legs) -> String {
+    let mut lines = vec![format!("# Leg against leg, {}", legs.date), String::new()];
+    lines.extend(markdown::machine(&legs.machine));
+    lines.extend(legs.remarks.iter().map(|r| format!("- {}", text(r))));
+    lines.push(String::new());
+    lines.extend(how(legs.runs).lines().map(str::to_owned));
+    lines.push(String::new());
+    lines.push(format!("**{}.**", verdict(legs)));
+    lines.push(String::new());
+    lines.push(format!("| {} |", COLUMNS.join(" | ")));
+    lines.push("|---|---|---|---|---:|---:|---:|---|".to_owned());
+    let row = |row: &Row| format!("| {} |", cells(row).map(|cell| text(&cell)).join(" | "));
+    lines.extend(legs.rows.iter().map(row));
+    lines.push(String::new());
+    lines.join("\n")
+}
+
+fn how(runs: u32) -> String {
+    format!(
+        "Medians of {runs} rounds after {WARM_UP} to warm up, with minimum and maximum; a round runs \
+         all legs of a scene,\nevery other one backwards, and ratios are taken within a round. A \
+         demand is met if the median ratio is\nno larger. *cover*: every fragment as a stream; \
+         *build*: the transparent ones in lists; from the same snapped\ntriangles, without \
+         transfers and compilation. The spec has one core, a software driver all of them. *hits*: \
+         every\nhit of the ray through every sample, by one call of `rtcIntersect1` each with the \
+         filter that collects, beside\nthe same ray as a replay asks for it, and the whole leg \
+         of a replay: the pairs, their classes, the rays, the verdict."
+    )
+}

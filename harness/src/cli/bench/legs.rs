@@ -1,0 +1,90 @@
+//! `triptych bench legs`.
+
+use std::io::Write;
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+
+use anyhow::Context;
+
+use super::super::Verdict;
+use super::super::adapters::{adapters, could_not_run};
+use super::super::run_info::today;
+use super::abuffer::{folder, reports, write};
+use crate::bench::Progress;
+use crate::bench::legs::{Legs, Options, csv, lines, page, run as measure};
+use crate::corpus;
+use crate::output::{complain, stdout};
+use crate::text::clean;
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  \
+    triptych bench legs                       the scenes of the demands, every adapter\n  \
+    triptych bench legs --adapter llvmpipe --runs 31\n  \
+    triptych bench legs bunny --out results   everything on one scene\n\n\
+    Demands: the spec on one core takes no longer for a fragment than llvmpipe's hardware path, \
+    and the Embree leg no more than 1.5 times as long as bare calls. Exit code 0 whether or not \
+    they are met: a benchmark judges no machine. 2: nothing could be measured.")]
+pub struct Args {
+    /// Parts of scene names, scene files, or meshes; without one three real meshes and 64
+    /// layers over a whole target
+    #[arg(value_name = "PATTERN")]
+    patterns: Vec<String>,
+    /// Patterns are whole names
+    #[arg(long)]
+    exact: bool,
+    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Vec<String>,
+    /// Rounds that count, after two to warm up
+    #[arg(long, value_name = "N", default_value = "15")]
+    runs: NonZeroU32,
+    /// Where Markdown and CSV go [default: reports/out/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let corpus = corpus::list(&corpus::root())?;
+    let scenes = match args.patterns.is_empty() {
+        true => None,
+        false => Some(corpus::select(&corpus, &args.patterns, args.exact)?),
+    };
+    let found = adapters(&args.adapter)?;
+    if found.open.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    let options = Options {
+        scenes,
+        runs: args.runs.get(),
+        date: today(),
+    };
+    let legs = measure(&corpus, &found.open, &options, &Progress::new());
+    let legs = legs.map_err(anyhow::Error::msg)?;
+    let mut out = stdout();
+    for line in lines(&legs) {
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    for remark in &legs.remarks {
+        writeln!(out, "{}", clean(remark))?;
+    }
+    anyhow::ensure!(
+        !legs.rows.is_empty(),
+        "nothing was measured; see what was not, and why"
+    );
+    args.write(&legs)?;
+    Ok(Verdict::Agree)
+}
+
+impl Args {
+    fn write(&self, legs: &Legs) -> anyhow::Result<()> {
+        let folder = self.out.clone().unwrap_or_else(|| folder(&reports()));
+        let stem = legs.stem();
+        for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
+            let file = folder.join(format!("{stem}.{end}"));
+            write(&file, &text).with_context(|| format!("cannot write {}", file.display()))?;
+        }
+        writeln!(stdout(), "Results: {}", folder.display())?;
+        Ok(())
+    }
+}
