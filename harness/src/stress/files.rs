@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::judge::Wrong;
-use super::measure::{Bound, Measured, bounded};
+use super::measure::{Bound, Measured, bounded, exceeds};
 use super::sweeps::Sweep;
 use super::table::{ABOVE, Table};
 use crate::report::RunInfo;
@@ -49,7 +49,7 @@ pub fn write(
 }
 
 /// All rows.
-fn csv(all: &[Measured]) -> String {
+pub(super) fn csv(all: &[Measured]) -> String {
     let mut text = "sweep,step,value,stage,a,b,class,unit,compared,differ,unexplained,error,\
                     error_over_bound,admitted,admitted_share,admitted_budget,vertices,\
                     no_bound,subnormal,overflow,skipped\n"
@@ -136,19 +136,16 @@ fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) 
 }
 
 /// The largest error over bound of each stage on each adapter, and where.
-fn largest(all: &[Measured]) -> String {
+pub(super) fn largest(all: &[Measured]) -> String {
     let mut text =
         "\n## Largest error over bound\n\n| stage | leg | error over bound | at | error |\n\
                     |---|---|---|---|---|\n"
             .to_owned();
     for stage in bounded() {
-        let rows = |m: &'_ Measured| m.rows.iter().filter(|r| stage.is_of(r)).count() > 0;
-        let mut legs: Vec<&str> = all
-            .iter()
-            .filter(|m| rows(m))
-            .flat_map(|m| &m.rows)
-            .filter(|r| stage.is_of(r))
-            .map(|r| r.b.as_str())
+        let rows = all.iter().flat_map(|m| &m.rows);
+        let mut legs: Vec<&str> = rows
+            .filter(|row| stage.is_of(row))
+            .map(|row| row.b.as_str())
             .collect();
         legs.sort_unstable();
         legs.dedup();
@@ -159,25 +156,23 @@ fn largest(all: &[Measured]) -> String {
     text
 }
 
+/// A line of that table, over all rows of the stage and leg; none if nothing was
+/// compared.
 fn largest_of(all: &[Measured], stage: Bound, leg: &str) -> String {
-    let of = |m: &'_ Measured| {
-        m.rows
-            .iter()
-            .find(|r| stage.is_of(r) && r.b == leg)
-            .cloned()
-    };
-    let found = all.iter().filter_map(|m| Some((m, of(m)?)));
-    let found = found.filter_map(|(m, row)| Some((row.error_over_bound?, m, row)));
-    let Some((ratio, m, row)) = found.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
+    let is_of = |row: &Row| stage.is_of(row) && row.b == leg;
+    let found = all
+        .iter()
+        .filter_map(|m| m.worst_of(is_of).map(|(ratio, row)| (ratio, row, m)));
+    let largest = found.reduce(|a, b| if exceeds(b.0, a.0) { b } else { a });
+    let Some((ratio, row, m)) = largest else {
         return String::new();
     };
-    let Row { error, .. } = row;
     format!(
         "| {} | {leg} | {ratio:.4} | {} {} | {} |\n",
         stage.name(),
         m.sweep,
         m.step,
-        error.map_or_else(String::new, |e| format!("{e:.3e}")),
+        row.error.map_or_else(String::new, |e| format!("{e:.3e}")),
     )
 }
 
