@@ -10,6 +10,7 @@ use super::sweeps::Sweep;
 use super::table::{ABOVE, Table};
 use crate::report::RunInfo;
 use crate::row::Row;
+use crate::text::{markdown as escaped, quoted};
 
 /// Files that a run wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,7 +82,7 @@ pub(super) fn csv(all: &[Measured]) -> String {
                 n.overflow.to_string(),
                 row.skipped.clone().unwrap_or_default(),
             ];
-            let cells = cells.map(|cell| quoted(&cell));
+            let cells = cells.each_ref().map(|cell| quoted(cell));
             text += &(cells.join(",") + "\n");
         }
     }
@@ -92,24 +93,22 @@ fn optional(number: Option<f64>) -> String {
     number.map_or_else(String::new, |n| format!("{n:e}"))
 }
 
-/// A cell of a CSV file (RFC 4180).
-fn quoted(cell: &str) -> String {
-    match cell.contains([',', '"', '\n', '\r']) {
-        false => cell.to_owned(),
-        true => format!("\"{}\"", cell.replace('"', "\"\"")),
-    }
-}
-
 fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
     let mut text = format!("# Stability, {}\n\n`{}`\n\n", run.date, run.command);
     let facts = run.machine.iter().chain(&run.versions);
     for (name, value) in facts {
-        line(&mut text, format_args!("- {name}: {value}"));
+        line(
+            &mut text,
+            format_args!("- {}: {}", escaped(name), escaped(value)),
+        );
     }
     for adapter in &run.adapters {
         let facts = adapter.facts.iter().map(|(n, v)| format!("{n} {v}"));
         let facts = facts.collect::<Vec<_>>().join(", ");
-        line(&mut text, format_args!("- {}: {facts}", adapter.name));
+        line(
+            &mut text,
+            format_args!("- {}: {}", escaped(&adapter.name), escaped(&facts)),
+        );
     }
     let compared: u64 = all.iter().map(Measured::compared).sum();
     let (steps, seconds) = (all.len(), run.seconds);
@@ -126,7 +125,7 @@ fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) 
         ),
     );
     for wrong in wrong {
-        line(&mut text, format_args!("- {wrong}"));
+        line(&mut text, format_args!("- {}", escaped(&wrong.to_string())));
     }
     text += &largest(all);
     for sweep in sweeps {
@@ -168,8 +167,9 @@ fn largest_of(all: &[Measured], stage: Bound, leg: &str) -> String {
         return String::new();
     };
     format!(
-        "| {} | {leg} | {ratio:.4} | {} {} | {} |\n",
+        "| {} | {} | {ratio:.4} | {} {} | {} |\n",
         stage.name(),
+        escaped(leg),
         m.sweep,
         m.step,
         row.error.map_or_else(String::new, |e| format!("{e:.3e}")),
@@ -184,11 +184,12 @@ fn section(sweep: &Sweep, all: &[Measured]) -> String {
     line(&mut text, format_args!("|{}", "---|".repeat(names.len())));
     let mut table = Table::default();
     for m in all.iter().filter(|m| m.sweep == sweep.name) {
-        let cells = table.cells(m).join(" | ");
+        let cells: Vec<String> = table.cells(m).iter().map(|cell| escaped(cell)).collect();
+        let cells = cells.join(" | ");
         line(&mut text, format_args!("| {cells} |"));
     }
     for note in table.notes() {
-        line(&mut text, format_args!("\n{note}"));
+        line(&mut text, format_args!("\n{}", escaped(&note)));
     }
     text
 }

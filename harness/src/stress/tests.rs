@@ -189,6 +189,10 @@ fn both_votes_are_shown() {
     for part in [",0.01,,", ",0.2,,"] {
         assert_eq!(csv.matches(part).count(), 1, "share of each: {csv}");
     }
+    // A leg's name may hold what ends a cell.
+    let mut marked = measured(votes([0.5, 0.5]).to_vec());
+    marked.rows[0].b = "a|b".to_owned();
+    assert!(files::largest(&[marked]).contains("| a\\|b |"));
     // What was not asked for has no share.
     let mut silent = votes([0.5, 0.5]).to_vec();
     silent[1].skipped = Some("plan: no triangles".to_owned());
