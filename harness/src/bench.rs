@@ -9,8 +9,8 @@
 //! resolve. Not timed: transfers, compilation, and the vertex stages.
 //!
 //! Every round runs every leg and every variant once, so that whatever slows a machine
-//! down for a while slows all of them; [`WARM_UP`] rounds come before the first that
-//! counts. GPU times are the device's own timestamps. No picture is timed that was not
+//! down for a while slows all of them. Before the first that counts come [`WARM_UP`]
+//! rounds, and more of them until each adapter was at work for [`WARM_UP_WORK`]. GPU times are the device's own timestamps. No picture is timed that was not
 //! compared with the spec's, inside the spec's bound, before the rounds and after them.
 
 pub mod ceiling;
@@ -29,6 +29,9 @@ mod spec;
 pub mod spread;
 pub mod svg;
 pub mod table;
+mod warm;
+
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -38,8 +41,12 @@ pub use progress::Progress;
 pub use run::{Options, Outcome, run};
 pub use spread::Spread;
 
-/// Rounds before the first that counts.
+/// Rounds before the first that counts, at least.
 pub const WARM_UP: u32 = 2;
+
+/// How long each adapter is at work on a scene before the first round that counts, at
+/// least.
+pub const WARM_UP_WORK: Duration = Duration::from_secs(1);
 
 /// The scenes that are measured if none is asked for, each expensive in its own way:
 /// opaque walls with a few layers of glass before them, as games have it; 871,414
@@ -129,7 +136,8 @@ pub struct Row {
 }
 
 impl Bench {
-    /// The faster method of each leg and number of layers, in the order of the rows.
+    /// The faster method of each leg and number of layers: the legs in the order of the
+    /// rows, and each leg's from one layer to all.
     pub fn fastest(&self) -> impl Iterator<Item = &Row> {
         let faster = |row: &Row| {
             let rival = |other: &&Row| {
@@ -141,7 +149,33 @@ impl Bench {
                 (row.time.median, row.method) < (other.time.median, other.method)
             })
         };
-        self.rows.iter().filter(move |row| faster(row))
+        let mut fastest: Vec<&Row> = self.rows.iter().filter(|row| faster(row)).collect();
+        let (scenes, legs) = (self.scenes(), self.legs());
+        let place = |all: &[&str], name: &str| all.iter().position(|other| *other == name);
+        fastest.sort_by_key(|row| {
+            (
+                place(&scenes, &row.scene),
+                place(&legs, &row.leg),
+                row.layers,
+            )
+        });
+        fastest.into_iter()
+    }
+
+    /// What is to be said of the scenes of which rows vary more than their figures bear.
+    pub fn varying(&self) -> Vec<String> {
+        let words = |scene: &&str| {
+            let own = self.rows.iter().filter(|row| row.scene == *scene);
+            let (all, vary) = own.fold((0, 0), |(all, vary), row| {
+                (all + 1, vary + u32::from(row.time.varies()))
+            });
+            let words = format!(
+                "times vary: {scene}: the maximum is more than twice the minimum in {vary} of \
+                 {all} rows"
+            );
+            (vary > 0).then_some(words)
+        };
+        self.scenes().iter().filter_map(words).collect()
     }
 
     /// The scenes, in the order of the rows.
@@ -163,4 +197,68 @@ fn in_order<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
         }
     }
     seen
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::report::bench_example;
+
+    use super::{Bench, Method, Row};
+
+    /// Rows as a run gives them: of each leg first those by insertion, then by sorting.
+    fn rows() -> Bench {
+        let mut bench = bench_example();
+        let row = |leg: &str, method, layers, median| {
+            let mut row = Row {
+                leg: leg.to_owned(),
+                method,
+                layers,
+                ..bench.rows[0].clone()
+            };
+            row.time.median = median;
+            row
+        };
+        let of = |leg| {
+            let (fast, slow) = (1.0, 2.0);
+            [
+                row(leg, Method::Insertion, 1, fast),
+                row(leg, Method::Insertion, 2, fast),
+                row(leg, Method::Insertion, 4, slow),
+                row(leg, Method::Insertion, 8, fast),
+                row(leg, Method::Sort, 1, slow),
+                row(leg, Method::Sort, 2, slow),
+                row(leg, Method::Sort, 4, fast),
+                row(leg, Method::Sort, 8, slow),
+            ]
+        };
+        bench.rows = [of("spec"), of("gpu@a/compute")].concat();
+        bench
+    }
+
+    #[test]
+    fn the_fastest_come_in_order_of_layers() {
+        let bench = rows();
+        let fastest = bench.fastest().map(|row| (row.leg.as_str(), row.layers));
+        let all = [1, 2, 4, 8];
+        let must = [all.map(|n| ("spec", n)), all.map(|n| ("gpu@a/compute", n))];
+        assert_eq!(fastest.collect::<Vec<_>>(), must.concat());
+        let by_sort = bench.fastest().filter(|row| row.method == Method::Sort);
+        assert_eq!(by_sort.map(|row| row.layers).collect::<Vec<_>>(), [4, 4]);
+    }
+
+    #[test]
+    fn times_that_vary_are_told() {
+        let mut bench = rows();
+        let mut vary = |at: usize, min, max| {
+            let time = &mut bench.rows[at].time;
+            (time.min, time.max) = (min, max);
+        };
+        (0..16).for_each(|at| vary(at, 1.0, 2.0));
+        assert_eq!(bench.varying(), [""; 0], "twice is not more than twice");
+        let time = &mut bench.rows[3].time;
+        (time.min, time.max) = (0.7, 3.3);
+        let must = "times vary: abuffer/<script>: the maximum is more than twice the minimum in 1 \
+                    of 16 rows";
+        assert_eq!(bench.varying(), [must]);
+    }
 }

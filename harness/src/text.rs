@@ -110,6 +110,26 @@ pub fn cut(text: &str, characters: usize) -> Cow<'_, str> {
     }
 }
 
+/// A cell of comma-separated values (RFC 4180).
+pub fn quoted(cell: &str) -> Cow<'_, str> {
+    match cell.contains([',', '"', '\n', '\r']) {
+        true => Cow::Owned(format!("\"{}\"", cell.replace('"', "\"\""))),
+        false => Cow::Borrowed(cell),
+    }
+}
+
+/// Untrusted text in a line or a cell of Markdown, as [`clean`], that marks nothing up.
+pub fn markdown(untrusted: &str) -> String {
+    let mut text = String::new();
+    for c in clean(untrusted).chars() {
+        if "|\\`*<>[]&".contains(c) {
+            text.push('\\');
+        }
+        text.push(c);
+    }
+    text
+}
+
 /// A word of a POSIX shell's command line.
 pub fn shell_word(word: &str) -> Cow<'_, str> {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_./@%+=:,-".contains(c);
@@ -183,6 +203,17 @@ mod tests {
         let hostile = "a\x1b[31mb\nc\u{202e}d\u{9b}e";
         assert_eq!(clean(hostile), "a\u{fffd}[31mb\u{fffd}c\u{fffd}d\u{fffd}e");
         assert_eq!(clean("Größe ✓"), "Größe ✓", "ordinary text stays");
+    }
+
+    #[test]
+    fn cells_hold_what_would_end_them() {
+        assert_eq!(quoted("abuffer/a b"), "abuffer/a b");
+        assert_eq!(quoted("a,\"b\"\n"), "\"a,\"\"b\"\"\n\"");
+        assert_eq!(
+            markdown("a|b<c>&\n`[d]"),
+            "a\\|b\\<c\\>\\&\u{fffd}\\`\\[d\\]"
+        );
+        assert_eq!(markdown("1/256, snake_case"), "1/256, snake_case");
     }
 
     #[test]

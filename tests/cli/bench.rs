@@ -73,7 +73,15 @@ fn results_are_written_and_sound() {
         panic!("one page: {pages:?}");
     };
     assert!(page.with_extension("svg").is_file(), "beside its front");
-    assert!(read(page.clone()).contains("| 12 (all) |"), "a table");
+    let text = read(page.clone());
+    for part in [
+        "| 12 (all) |",
+        "at least 2 rounds to warm up",
+        "at work for 1 s on each scene",
+        "exceed 100 %",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
     // The report of a replay shows it.
     place.run(&["replay", "--leg", "gpu", "deep"]).expect(0);
     let report = read(place.root.join("reports/out/index.html"));
@@ -139,6 +147,46 @@ fn a_wrong_kernel_is_named_and_not_timed() {
         "pixel (",
     ] {
         assert!(first.contains(part), "{part} in {first}");
+    }
+}
+
+/// All layers have one colour, so that every order gives the same picture.
+#[test]
+fn a_kernel_that_does_not_sort_is_found() {
+    let place = Place::new("bench-sort");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let empty = place.run(&["bench", "abuffer", "--kernel", "sort=?"]);
+    place.write("empty.wgsl", &empty.expect(0).stdout);
+    let command = ["bench", "abuffer", "deep", "--runs", "1", "--adapter"];
+    let kernel = ["llvmpipe", "--kernel", "sort=empty.wgsl"];
+    let ran = place.run(&[&command[..], &kernel].concat()).expect(1);
+    let wrong = "triptych: abuffer/deep: gpu@llvmpipe/compute, sorted lists: 16 fragments differ; \
+                 sort-order: pixel (";
+    assert!(ran.stderr.contains(wrong), "{}", ran.stderr);
+    assert!(!ran.stdout.contains("/compute"), "{}", ran.stdout);
+}
+
+/// A frame starts from snapped triangles.
+#[test]
+fn a_kernel_that_no_frame_runs_is_refused() {
+    let place = Place::new("bench-not-run");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    for (stage, file) in [
+        ("transform", "vertex"),
+        ("clip", "vertex"),
+        ("snap", "vertex"),
+        ("cover", "raster"),
+    ] {
+        place.write("mine.wgsl", &format!("//#import {file}\n"));
+        let kernel = format!("{stage}=mine.wgsl");
+        let ran = place.run(&["bench", "abuffer", "deep", "--kernel", &kernel]);
+        let ran = ran.expect(2);
+        let words = format!(
+            "triptych: --kernel {kernel}: no frame of bench runs this stage, only opaque, build, \
+             sort, resolve\n"
+        );
+        assert_eq!(ran.stderr, words);
+        assert_eq!(ran.stdout, "");
     }
 }
 

@@ -143,10 +143,30 @@ impl<'r, 'g> Timed<'r, 'g> {
     /// # Errors
     /// Whatever the device reports.
     pub fn build(&self) -> Result<Lists, GpuError> {
-        let gpu = self.rasterizer.gpu;
         for part in 0..self.built {
             self.run(part)?;
         }
+        self.lists()
+    }
+
+    /// Runs all up to stage sort, which [`Self::follow`] set up, and gives the lists to be
+    /// compared.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn sorted(&self) -> Result<Lists, GpuError> {
+        for (at, part) in self.parts().enumerate() {
+            self.run(at)?;
+            if part == Part::Sort {
+                break;
+            }
+        }
+        self.lists()
+    }
+
+    /// The lists as they are.
+    fn lists(&self) -> Result<Lists, GpuError> {
+        let gpu = self.rasterizer.gpu;
         let pixels = self.frame.width * self.frame.rows;
         let attempts = gpu.read::<u32>(&self.buffers.counter, 1)?[0];
         let stored = attempts.min(self.frame.capacity) as usize;

@@ -1,6 +1,7 @@
 //! Rows as comma-separated values, one line each, in a fixed order of columns.
 
 use super::{Bench, Row};
+use crate::text::quoted;
 
 /// The columns. Times are in milliseconds, rates per second, memory in bytes, PSNR in
 /// decibels or `exact`; `ratio` is over the same leg's time of all layers by sorting.
@@ -54,12 +55,13 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
         number(parts.fold(0.0, |sum, (_, ms)| sum + ms))
     };
     [
-        quoted(&row.scene),
+        // Names of scenes come from folders, which may be called anything.
+        quoted(&row.scene).into_owned(),
         row.size[0].to_string(),
         row.size[1].to_string(),
         row.fragments.to_string(),
         row.longest.to_string(),
-        quoted(&row.leg),
+        quoted(&row.leg).into_owned(),
         row.method.name().to_owned(),
         row.layers.to_string(),
         row.all.to_string(),
@@ -87,12 +89,4 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
 /// Six digits behind the point tell nanoseconds apart.
 pub(super) fn number(value: f64) -> String {
     format!("{value:.6}")
-}
-
-/// Names of scenes come from folders, which may be called anything.
-pub(super) fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
 }

@@ -4,15 +4,17 @@ use triptych_gpu::abuffer::{Options, Part, Timed};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Rasterizer;
 use triptych_gpu::timer::{Clock, Timer};
+use triptych_spec::abuffer::Lists;
 
+use super::Method;
 use super::error::Error;
 use super::grid::Grid;
 use super::scene::Measured;
-use super::{Method, WARM_UP};
 use crate::compare::compare;
 use crate::compare::image;
 use crate::compare::lists::certify;
-use crate::observe::{Gpu, Observed};
+use crate::compare::order;
+use crate::observe::{Gpu, Observed, Spec};
 
 /// Why a leg has no figures.
 pub(super) enum Refusal {
@@ -31,6 +33,8 @@ impl From<GpuError> for Refusal {
 /// A leg that is set up, and whose pictures are right.
 pub(super) struct Leg<'r> {
     pub(super) label: String,
+    /// Name of its adapter.
+    pub(super) adapter: &'r str,
     pub(super) grid: &'r Grid,
     timed: Timed<'r, 'r>,
     timer: Timer,
@@ -69,11 +73,13 @@ impl<'r> Leg<'r> {
             )));
         };
         timed.follow(longest, &grid.layers)?;
+        sorted(&label, &timed.sorted()?, grid)?;
         let parts: Vec<Part> = timed.parts().collect();
         let spans = u32::try_from(parts.len()).expect("a few parts");
         let mut leg = Self {
             timer: Timer::new(rasterizer.gpu, clock, spans)?,
             label,
+            adapter: &rasterizer.gpu.name,
             grid,
             timed,
             parts,
@@ -112,12 +118,16 @@ impl<'r> Leg<'r> {
         }
     }
 
-    /// Runs everything once, and keeps the times after the warm-up.
+    /// Runs everything once, and keeps no times.
+    pub(super) fn warm_up(&self, round: u32) -> Result<(), Refusal> {
+        self.timed.time(&self.timer, round)?;
+        Ok(())
+    }
+
+    /// Runs everything once, and keeps the times.
     pub(super) fn round(&mut self, round: u32) -> Result<(), Refusal> {
         let seconds = self.timed.time(&self.timer, round)?;
-        if round >= WARM_UP {
-            self.rounds.push(seconds);
-        }
+        self.rounds.push(seconds);
         Ok(())
     }
 
@@ -157,6 +167,23 @@ impl<'r> Leg<'r> {
         };
         self.errors.iter().map(frame).collect()
     }
+}
+
+/// Compares the sorted lists with the spec's: pictures hide an order that changes no
+/// colour.
+fn sorted(label: &str, lists: &Lists, grid: &Grid) -> Result<(), Refusal> {
+    let must = Observed::<Spec, _>::new("spec", &grid.run.sorted);
+    let seen = Observed::<Gpu, _>::new(label, lists);
+    let width = grid.run.primitives.size.width;
+    let judgement = compare(&must, &seen, |a, b| order::compare(a, b, width));
+    if judgement.differ() == 0 && judgement.compared > 0 {
+        return Ok(());
+    }
+    let (differ, unit) = (judgement.differ(), judgement.unit);
+    let first = judgement.described.first().cloned().unwrap_or_default();
+    Err(Refusal::Wrong(format!(
+        "{label}, sorted lists: {differ} {unit} differ; {first}"
+    )))
 }
 
 /// A part's name in results.

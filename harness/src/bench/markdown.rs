@@ -1,8 +1,8 @@
 //! A run as a page that can be committed beside others.
 
 use super::table::{COLUMNS, ceiling, cells, heading};
-use super::{Bench, Machine, WARM_UP};
-use crate::text::clean;
+use super::{Bench, Machine, WARM_UP, WARM_UP_WORK};
+use crate::text::markdown as text;
 
 impl Bench {
     /// The stem of the page and of what lies beside it: family, date and machine.
@@ -60,28 +60,19 @@ pub(super) fn machine(machine: &Machine) -> Vec<String> {
 
 fn how(bench: &Bench) -> String {
     format!(
-        "Medians of {} rounds after {WARM_UP} to warm up, with minimum and maximum; every round \
-         runs every leg\nand variant once. Timed is all from snapped triangles to the picture, \
-         coverage included: empty\nthe lists, opaque surfaces, build, order, blend; no transfers, \
-         no compilation. GPU times are timestamps\nof the device. Of each leg and number of \
+        "Medians of {} rounds, with minimum and maximum; every round runs every leg and variant \
+         once. Before\nthem come at least {WARM_UP} rounds to warm up, and as many as keep each \
+         adapter at work for {} s on each scene.\nTimed is all from snapped triangles to the \
+         picture, coverage included: empty\nthe lists, opaque surfaces, build, order, blend; no \
+         transfers, no compilation. GPU times are timestamps\nof the device. Of each leg and number of \
          layers the faster method is shown, the CSV has both:\n*insertion* keeps the n nearest in \
          one walk over the unsorted list, *sort* sorts and stops after n.\n*Of all* is the time \
          over the same leg's with all layers by sorting, round by round. PSNR is of linear\n\
          colours with peak 1 against the spec with all layers; *exact* means no difference at \
          all, and above\n100 dB there is only rounding. *Of bound* is the least time for the \
-         bytes or atomics that the technique\nmust move, at the ceilings above, over the median.",
-        bench.runs
+         bytes or atomics that the technique\nmust move, at the ceilings above, over the median.\nThe ceiling of copies is that of memory: \
+         where all data fit in a cache, as on tiny scenes, it can\nexceed 100 %.",
+        bench.runs,
+        WARM_UP_WORK.as_secs(),
     )
-}
-
-/// Untrusted text in a cell.
-pub(super) fn text(untrusted: &str) -> String {
-    let mut text = String::new();
-    for c in clean(untrusted).chars() {
-        if "|\\`*_<>[]#&".contains(c) && !"_#".contains(c) {
-            text.push('\\');
-        }
-        text.push(c);
-    }
-    text
 }

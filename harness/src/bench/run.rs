@@ -116,6 +116,7 @@ pub fn run(
             .extend(skipped.map(|why| format!("not measured: {why}")));
         wrong.extend(done.wrong);
     }
+    bench.remarks.extend(bench.varying());
     progress.end();
     Ok(Outcome { bench, wrong })
 }

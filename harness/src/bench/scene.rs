@@ -15,7 +15,8 @@ use super::gpu::{Leg, Refusal};
 use super::grid::Grid;
 use super::run::{Bound, Options};
 use super::spec::Core;
-use super::{Ceilings, Method, Progress, Row, Spread, WARM_UP};
+use super::warm::warm_up;
+use super::{Ceilings, Method, Progress, Row, Spread};
 use crate::calibrate;
 use crate::plan::Plan;
 use crate::replay::gpu::Adapter;
@@ -119,13 +120,16 @@ pub(super) fn scene(
             Err(refusal) => done.refused(&format!("{}: {label}", loaded.name), refusal),
         }
     }
-    let rounds = options.runs + WARM_UP;
-    progress.begin(&format!("{}: comparing", loaded.name), rounds);
+    progress.begin(&format!("{}: comparing", loaded.name), options.runs);
     let mut legs = legs(loaded, &plan, &prepared, &mut done);
     let spec = &grids[&SUBPIXEL_BITS];
     let mut core = Core::new(&loaded.scene, &plan, spec);
-    progress.begin(&format!("{}: measuring", loaded.name), rounds);
-    for round in 0..rounds {
+    progress.begin(&format!("{}: warming up", loaded.name), options.runs);
+    warm_up(&core, &mut legs, |result| {
+        keep(result, &loaded.name, &mut done)
+    });
+    progress.begin(&format!("{}: measuring", loaded.name), options.runs);
+    for round in 0..options.runs {
         core.round(round);
         legs.retain_mut(|leg| keep(leg.round(round), &loaded.name, &mut done));
         progress.step();

@@ -6,11 +6,11 @@ use triptych_gpu::abuffer::Part;
 use triptych_spec::abuffer::{build, nearest_layers, opaque, resolve, sort};
 use triptych_spec::scene::Scene;
 
+use super::Method;
 use super::counts::Work;
 use super::error::Error;
 use super::grid::Grid;
 use super::scene::Measured;
-use super::{Method, WARM_UP};
 use crate::plan::Plan;
 use crate::replay::spec::timed;
 
@@ -34,8 +34,18 @@ impl<'g> Core<'g> {
         }
     }
 
-    /// Runs everything once, and keeps the times after the warm-up.
+    /// Runs everything once, and keeps no times.
+    pub(super) fn warm_up(&self, round: u32) {
+        self.run(round);
+    }
+
+    /// Runs everything once, and keeps the times.
     pub(super) fn round(&mut self, round: u32) {
+        let times = self.run(round);
+        self.rounds.push(times);
+    }
+
+    fn run(&self, round: u32) -> [Vec<f64>; 4] {
         let (scene, run) = (self.scene, &self.grid.run);
         let primitives = &run.primitives;
         let mut before = Vec::new();
@@ -57,11 +67,8 @@ impl<'g> Core<'g> {
         }
         let (sorted, time) = timed(|| sort(&lists));
         let all = timed(|| resolve(scene, primitives, &run.opaque, &sorted)).1;
-        if round >= WARM_UP {
-            let times = [before, order, blend, vec![time, all]];
-            self.rounds
-                .push(times.map(|times| times.iter().map(Duration::as_secs_f64).collect()));
-        }
+        let times = [before, order, blend, vec![time, all]];
+        times.map(|times| times.iter().map(Duration::as_secs_f64).collect())
     }
 
     /// The frames that were measured.

@@ -33,6 +33,12 @@ impl Spread {
             max: *max,
         }
     }
+
+    /// Whether the largest is more than twice the smallest: something else than what was
+    /// measured decides then, such as a clock that rises.
+    pub fn varies(self) -> bool {
+        self.max > 2.0 * self.min
+    }
 }
 
 #[cfg(test)]

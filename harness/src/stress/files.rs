@@ -5,11 +5,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::judge::Wrong;
-use super::measure::{Bound, Measured, bounded};
+use super::measure::{Bound, Measured, bounded, exceeds};
 use super::sweeps::Sweep;
 use super::table::{ABOVE, Table};
 use crate::report::RunInfo;
 use crate::row::Row;
+use crate::text::{markdown as escaped, quoted};
 
 /// Files that a run wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +50,7 @@ pub fn write(
 }
 
 /// All rows.
-fn csv(all: &[Measured]) -> String {
+pub(super) fn csv(all: &[Measured]) -> String {
     let mut text = "sweep,step,value,stage,a,b,class,unit,compared,differ,unexplained,error,\
                     error_over_bound,admitted,admitted_share,admitted_budget,vertices,\
                     no_bound,subnormal,overflow,skipped\n"
@@ -81,7 +82,7 @@ fn csv(all: &[Measured]) -> String {
                 n.overflow.to_string(),
                 row.skipped.clone().unwrap_or_default(),
             ];
-            let cells = cells.map(|cell| quoted(&cell));
+            let cells = cells.each_ref().map(|cell| quoted(cell));
             text += &(cells.join(",") + "\n");
         }
     }
@@ -92,24 +93,22 @@ fn optional(number: Option<f64>) -> String {
     number.map_or_else(String::new, |n| format!("{n:e}"))
 }
 
-/// A cell of a CSV file (RFC 4180).
-fn quoted(cell: &str) -> String {
-    match cell.contains([',', '"', '\n', '\r']) {
-        false => cell.to_owned(),
-        true => format!("\"{}\"", cell.replace('"', "\"\"")),
-    }
-}
-
 fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
     let mut text = format!("# Stability, {}\n\n`{}`\n\n", run.date, run.command);
     let facts = run.machine.iter().chain(&run.versions);
     for (name, value) in facts {
-        line(&mut text, format_args!("- {name}: {value}"));
+        line(
+            &mut text,
+            format_args!("- {}: {}", escaped(name), escaped(value)),
+        );
     }
     for adapter in &run.adapters {
         let facts = adapter.facts.iter().map(|(n, v)| format!("{n} {v}"));
         let facts = facts.collect::<Vec<_>>().join(", ");
-        line(&mut text, format_args!("- {}: {facts}", adapter.name));
+        line(
+            &mut text,
+            format_args!("- {}: {}", escaped(&adapter.name), escaped(&facts)),
+        );
     }
     let compared: u64 = all.iter().map(Measured::compared).sum();
     let (steps, seconds) = (all.len(), run.seconds);
@@ -126,7 +125,7 @@ fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) 
         ),
     );
     for wrong in wrong {
-        line(&mut text, format_args!("- {wrong}"));
+        line(&mut text, format_args!("- {}", escaped(&wrong.to_string())));
     }
     text += &largest(all);
     for sweep in sweeps {
@@ -136,19 +135,16 @@ fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) 
 }
 
 /// The largest error over bound of each stage on each adapter, and where.
-fn largest(all: &[Measured]) -> String {
+pub(super) fn largest(all: &[Measured]) -> String {
     let mut text =
         "\n## Largest error over bound\n\n| stage | leg | error over bound | at | error |\n\
                     |---|---|---|---|---|\n"
             .to_owned();
     for stage in bounded() {
-        let rows = |m: &'_ Measured| m.rows.iter().filter(|r| stage.is_of(r)).count() > 0;
-        let mut legs: Vec<&str> = all
-            .iter()
-            .filter(|m| rows(m))
-            .flat_map(|m| &m.rows)
-            .filter(|r| stage.is_of(r))
-            .map(|r| r.b.as_str())
+        let rows = all.iter().flat_map(|m| &m.rows);
+        let mut legs: Vec<&str> = rows
+            .filter(|row| stage.is_of(row))
+            .map(|row| row.b.as_str())
             .collect();
         legs.sort_unstable();
         legs.dedup();
@@ -159,25 +155,24 @@ fn largest(all: &[Measured]) -> String {
     text
 }
 
+/// A line of that table, over all rows of the stage and leg; none if nothing was
+/// compared.
 fn largest_of(all: &[Measured], stage: Bound, leg: &str) -> String {
-    let of = |m: &'_ Measured| {
-        m.rows
-            .iter()
-            .find(|r| stage.is_of(r) && r.b == leg)
-            .cloned()
-    };
-    let found = all.iter().filter_map(|m| Some((m, of(m)?)));
-    let found = found.filter_map(|(m, row)| Some((row.error_over_bound?, m, row)));
-    let Some((ratio, m, row)) = found.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
+    let is_of = |row: &Row| stage.is_of(row) && row.b == leg;
+    let found = all
+        .iter()
+        .filter_map(|m| m.worst_of(is_of).map(|(ratio, row)| (ratio, row, m)));
+    let largest = found.reduce(|a, b| if exceeds(b.0, a.0) { b } else { a });
+    let Some((ratio, row, m)) = largest else {
         return String::new();
     };
-    let Row { error, .. } = row;
     format!(
-        "| {} | {leg} | {ratio:.4} | {} {} | {} |\n",
+        "| {} | {} | {ratio:.4} | {} {} | {} |\n",
         stage.name(),
+        escaped(leg),
         m.sweep,
         m.step,
-        error.map_or_else(String::new, |e| format!("{e:.3e}")),
+        row.error.map_or_else(String::new, |e| format!("{e:.3e}")),
     )
 }
 
@@ -189,11 +184,12 @@ fn section(sweep: &Sweep, all: &[Measured]) -> String {
     line(&mut text, format_args!("|{}", "---|".repeat(names.len())));
     let mut table = Table::default();
     for m in all.iter().filter(|m| m.sweep == sweep.name) {
-        let cells = table.cells(m).join(" | ");
+        let cells: Vec<String> = table.cells(m).iter().map(|cell| escaped(cell)).collect();
+        let cells = cells.join(" | ");
         line(&mut text, format_args!("| {cells} |"));
     }
     for note in table.notes() {
-        line(&mut text, format_args!("\n{note}"));
+        line(&mut text, format_args!("\n{}", escaped(&note)));
     }
     text
 }

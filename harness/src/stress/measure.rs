@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::{Numbers, Step};
 use crate::corpus::Entry;
+use crate::replay::embree::WORLD;
 use crate::row::{Class, Row};
 
 /// A stage whose results have a bound.
@@ -17,14 +18,16 @@ pub enum Bound {
     Snap,
     /// Blended colours.
     Resolve,
-    /// Depths of Embree's hits.
+    /// Depths of Embree's hits in screen space.
     Embree,
+    /// Depths of Embree's hits in world space.
+    World,
 }
 
 /// All of them, in the order of the stages.
-pub fn bounded() -> [Bound; 5] {
-    use Bound::{Clip, Embree, Resolve, Snap, Transform};
-    [Transform, Clip, Snap, Resolve, Embree]
+pub fn bounded() -> [Bound; 6] {
+    use Bound::{Clip, Embree, Resolve, Snap, Transform, World};
+    [Transform, Clip, Snap, Resolve, Embree, World]
 }
 
 impl Bound {
@@ -36,13 +39,15 @@ impl Bound {
             Self::Snap => "snap",
             Self::Resolve => "resolve",
             Self::Embree => "embree",
+            Self::World => WORLD,
         }
     }
 
     /// Whether a row is of this stage.
     pub fn is_of(self, row: &Row) -> bool {
         match self {
-            Self::Embree => row.class == Class::Vote,
+            Self::Embree => row.class == Class::Vote && row.stage != WORLD,
+            Self::World => row.class == Class::Vote && row.stage == WORLD,
             stage => row.class == Class::Interval && row.stage == stage.name(),
         }
     }
@@ -96,21 +101,28 @@ impl Measured {
 
     /// The largest error over bound of a stage, and whose; `None` if nothing was compared.
     pub fn worst(&self, stage: Bound) -> Option<(f64, &Row)> {
-        let rows = self.rows.iter().filter(|row| stage.is_of(row));
-        let judged = rows.filter(|row| row.skipped.is_none());
-        let ratios = judged.filter_map(|row| Some((row.error_over_bound?, row)));
-        ratios.reduce(|a, b| if b.0 > a.0 || b.0.is_nan() { b } else { a })
+        self.worst_of(|row| stage.is_of(row))
     }
 
-    /// Share of Embree's pairs that are in class edge or unresolved.
-    pub fn edge(&self) -> Option<f64> {
-        let mut rows = self.rows.iter().filter(|row| Bound::Embree.is_of(row));
-        rows.next().map(Row::admitted_share)
+    /// The same of the rows of which this is true.
+    pub(super) fn worst_of(&self, is_of: impl Fn(&Row) -> bool) -> Option<(f64, &Row)> {
+        let rows = self.rows.iter().filter(|row| is_of(row));
+        let judged = rows.filter(|row| row.skipped.is_none());
+        let ratios = judged.filter_map(|row| Some((row.error_over_bound?, row)));
+        ratios.reduce(|a, b| if exceeds(b.0, a.0) { b } else { a })
+    }
+
+    /// Largest share of a vote's pairs that are in class edge or unresolved; `None` if
+    /// none was asked for.
+    pub fn edge(&self, vote: Bound) -> Option<f64> {
+        let rows = self.rows.iter().filter(|row| vote.is_of(row));
+        let asked = rows.filter(|row| row.skipped.is_none() || row.admitted > 0);
+        asked.map(Row::admitted_share).reduce(f64::max)
     }
 
     /// Largest share of a GPU leg's items that went unjudged.
     pub fn unjudged(&self) -> f64 {
-        let rows = self.rows.iter().filter(|row| !Bound::Embree.is_of(row));
+        let rows = self.rows.iter().filter(|row| row.class != Class::Vote);
         rows.map(Row::admitted_share).fold(0.0, f64::max)
     }
 
@@ -125,4 +137,10 @@ impl Measured {
         let rows = self.rows.iter().filter(move |row| reason(row));
         rows.map(|row| (row, row.skipped.as_deref().unwrap_or_default()))
     }
+}
+
+/// Whether `b` is the larger of two errors over bound: one that is no number is larger
+/// than all.
+pub(super) fn exceeds(b: f64, a: f64) -> bool {
+    b > a || b.is_nan()
 }

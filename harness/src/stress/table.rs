@@ -6,7 +6,7 @@ use super::measure::{Bound, Measured, bounded};
 use crate::text::{clean, compact, share};
 
 /// Columns, and how wide they are on a terminal.
-const COLUMNS: [(&str, usize); 13] = [
+const COLUMNS: [(&str, usize); 15] = [
     ("step", 8),
     ("compared", 9),
     ("transform", 10),
@@ -14,8 +14,10 @@ const COLUMNS: [(&str, usize); 13] = [
     ("snap", 8),
     ("resolve", 8),
     ("embree", 8),
+    ("world", 8),
     ("worst", 10),
     ("edge", 9),
+    ("world edge", 11),
     ("unjudged", 9),
     ("no bound", 9),
     ("subnormal", 10),
@@ -23,8 +25,8 @@ const COLUMNS: [(&str, usize); 13] = [
 ];
 
 /// Above the numbers: whose they are.
-pub const ABOVE: &str = "error over bound, the largest of all legs, by stage; share of Embree's pairs in class edge; \
-     largest share unjudged; vertices";
+pub const ABOVE: &str = "error over bound, the largest of all legs, by stage, Embree's in screen and in world space; \
+     share of Embree's pairs in class edge, in both; largest share unjudged; vertices";
 
 /// Lines of one sweep, as they come.
 #[derive(Default)]
@@ -51,7 +53,9 @@ impl Table {
         let largest = largest.reduce(|a, b| if b.1 > a.1 { b } else { a });
         let name = |(stage, _): (Bound, f64)| stage.name().to_owned();
         cells.push(largest.map_or_else(dash, name));
-        cells.push(m.edge().map_or_else(dash, share));
+        cells.extend(
+            [Bound::Embree, Bound::World].map(|vote| m.edge(vote).map_or_else(dash, share)),
+        );
         cells.push(share(m.unjudged()));
         let n = m.numbers;
         cells.extend([n.unbounded, n.subnormal, n.overflow].map(|count| {

@@ -21,6 +21,18 @@ fn interval(stage: &str, ratio: f64) -> Row {
     }
 }
 
+/// Embree's rows in screen and in world space, of which the largest errors are these.
+fn votes(ratios: [f64; 2]) -> [Row; 2] {
+    let stages = ["cover", "world"].into_iter().zip(ratios);
+    let mut rows = stages.map(|(stage, ratio)| Row {
+        class: Class::Vote,
+        b: "embree".to_owned(),
+        admitted_budget: None,
+        ..interval(stage, ratio)
+    });
+    [(); 2].map(|()| rows.next().expect("two rows"))
+}
+
 fn measured(rows: Vec<Row>) -> Measured {
     let [scale, ..] = sweeps();
     let entry = Entry {
@@ -123,22 +135,68 @@ fn what_differs_or_goes_unjudged_or_is_not_said_is_wrong() {
 #[test]
 fn a_bound_that_is_nowhere_reached_is_of_no_use() {
     let rows = |ratio| {
-        bounded()
-            .map(|stage| interval(stage.name(), ratio))
-            .to_vec()
-    };
-    let embree = Row {
-        class: Class::Vote,
-        ..interval("cover", 0.5)
+        let stages = ["transform", "clip", "snap", "resolve"];
+        stages.map(|stage| interval(stage, ratio)).to_vec()
     };
     let with = |mut rows: Vec<Row>| {
-        rows.push(embree.clone());
+        rows.extend(votes([0.5, 0.5]));
         useless(&[measured(rows)])
     };
     assert_eq!(with(rows(0.001)), []);
     let four = with(rows(0.0009));
     let stages: Vec<&str> = four.iter().map(|w| w.stage.as_str()).collect();
     assert_eq!(stages, ["transform", "clip", "snap", "resolve"]);
+}
+
+/// The second vote is worse, and neither hides the other.
+#[test]
+fn both_votes_are_shown() {
+    let [mut screen, mut world] = votes([0.25, 0.5]);
+    (screen.admitted, world.admitted) = (1, 20);
+    let mut larger = world.clone();
+    larger.error_over_bound = Some(0.75);
+    let steps = [
+        measured(vec![screen.clone(), world.clone()]),
+        measured(vec![screen, world, larger]),
+    ];
+    let edge = |stage| steps[0].edge(stage);
+    assert_eq!(edge(Bound::Embree), Some(0.01));
+    assert_eq!(edge(Bound::World), Some(0.2));
+    let page = files::largest(&steps);
+    let rows: Vec<&str> = page.lines().filter(|l| l.contains("embree")).collect();
+    assert_eq!(
+        rows,
+        [
+            "| embree | embree | 0.2500 | scale 2^-148 |  |",
+            "| world | embree | 0.7500 | scale 2^-148 |  |"
+        ]
+    );
+    let names = Table::names();
+    let cells = Table::default().cells(&steps[1]);
+    let cell = |name: &str| {
+        let at = names.iter().position(|n| *n == name);
+        cells[at.expect("a column")].as_str()
+    };
+    let shown = ["embree", "world", "worst", "edge", "world edge", "unjudged"].map(cell);
+    assert_eq!(
+        shown,
+        ["0.2500", "0.7500", "world", "1.00 %", "20.0 %", "0 %"]
+    );
+    let csv = files::csv(&steps[..1]);
+    for part in [",cover,spec,embree,vote,", ",world,spec,embree,vote,"] {
+        assert_eq!(csv.matches(part).count(), 1, "{csv}");
+    }
+    for part in [",0.01,,", ",0.2,,"] {
+        assert_eq!(csv.matches(part).count(), 1, "share of each: {csv}");
+    }
+    // A leg's name may hold what ends a cell.
+    let mut marked = measured(votes([0.5, 0.5]).to_vec());
+    marked.rows[0].b = "a|b".to_owned();
+    assert!(files::largest(&[marked]).contains("| a\\|b |"));
+    // What was not asked for has no share.
+    let mut silent = votes([0.5, 0.5]).to_vec();
+    silent[1].skipped = Some("plan: no triangles".to_owned());
+    assert_eq!(measured(silent).edge(Bound::World), None);
 }
 
 /// A kernel with a defect, on the smallest step: the step does not hold.

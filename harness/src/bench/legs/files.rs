@@ -1,10 +1,10 @@
 //! Rows as a page that can be committed, and as comma-separated values.
 
-use super::super::csv::{number, quoted};
-use super::super::markdown::text;
+use super::super::csv::number;
 use super::super::{WARM_UP, markdown};
 use super::table::{COLUMNS, cells, verdict};
 use super::{Legs, Row};
+use crate::text::{markdown as text, quoted};
 
 /// The columns of the file of values. Times are in milliseconds; a ratio is of the time of
 /// an item; what is not demanded is empty.

@@ -16,11 +16,16 @@ use crate::bench::{Bench, Options, Progress, SCENES, csv, markdown, run as measu
 use crate::corpus;
 use crate::mesh::Intake;
 use crate::output::{complain, stdout};
+use crate::registry::FAMILIES;
 use crate::text::clean;
+use triptych_gpu::kernel::Foreign;
 use triptych_gpu::raster::Path;
 
 /// Among the results, what the report reads.
 pub const FILE: &str = "abuffer.json";
+
+/// The family whose stages are measured.
+const FAMILY: &str = "abuffer";
 
 /// Bytes that it may have; a row has about a thousand.
 const FILE_MAX: u64 = 1 << 26;
@@ -45,7 +50,7 @@ pub struct Args {
     /// Only this raster path (repeatable)
     #[arg(long)]
     path: Vec<PathName>,
-    /// Rounds that count, after two to warm up
+    /// Rounds that count, after two, and a second of each adapter, to warm up
     #[arg(long, value_name = "N", default_value = "15")]
     runs: NonZeroU32,
     /// Numbers of nearest layers beside all [default: 1, 2, 4, …]
@@ -76,6 +81,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
             return Ok(Verdict::Agree);
         }
     };
+    all_run(&foreign)?;
     let entries = corpus::list(&corpus::root())?;
     let selected = match args.patterns.is_empty() {
         true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
@@ -108,6 +114,22 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         "nothing was measured on an adapter; see what was not, and why"
     );
     Ok(Verdict::Agree)
+}
+
+/// Whether a frame runs all of these kernels: it starts from snapped triangles, and makes
+/// no stream of what they cover.
+fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
+    let family = FAMILIES.iter().find(|family| family.name == FAMILY);
+    let stages = family.map_or(&[][..], |family| family.stages);
+    let names: Vec<&str> = stages.iter().map(|stage| stage.name).collect();
+    match foreign.iter().find(|f| !names.contains(&f.stage.name)) {
+        None => Ok(()),
+        Some(Foreign { stage, file, .. }) => anyhow::bail!(
+            "--kernel {}={file}: no frame of bench runs this stage, only {}",
+            stage.name,
+            names.join(", ")
+        ),
+    }
 }
 
 impl Args {
