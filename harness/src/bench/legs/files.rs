@@ -48,17 +48,17 @@ fn values(row: &Row, runs: u32) -> [String; VALUES.len()] {
         against.map_or_else(String::new, |against| number(of(&against.ratio)))
     };
     [
-        quoted(&row.scene),
+        quoted(&row.scene).into_owned(),
         row.what.to_owned(),
         row.items.to_string(),
-        quoted(&row.leg),
+        quoted(&row.leg).into_owned(),
         runs.to_string(),
         row.clock.to_owned(),
         number(row.time.median),
         number(row.time.min),
         number(row.time.max),
         format!("{:.0}", row.rate()),
-        against.map_or_else(String::new, |against| quoted(&against.leg)),
+        against.map_or_else(String::new, |against| quoted(&against.leg).into_owned()),
         ratio(|r| r.median),
         ratio(|r| r.min),
         ratio(|r| r.max),
