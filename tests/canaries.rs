@@ -2,6 +2,7 @@
 //! for each typed cause, which every leg must report as exactly that cause. Each runs on
 //! a scene on which the shipped kernels agree.
 
+mod adapters;
 #[path = "canaries/leg.rs"]
 mod leg;
 
@@ -16,7 +17,6 @@ use triptych_gpu::raster::Path;
 use triptych_harness::cause::Cause;
 use triptych_harness::corpus;
 use triptych_harness::mutants::{Cell, Columns, Lab, Mutant, by_mutant, legs, mutants};
-use triptych_harness::replay::gpu::{Adapter, Adapters};
 use triptych_harness::replay::{Options, replay};
 
 fn main() -> ExitCode {
@@ -139,7 +139,7 @@ fn no_kill(cage: &Cage) -> Result<(), Failed> {
 /// Kernels that are broken before the mutant comes.
 fn no_ground(_: &Cage) -> Result<(), Failed> {
     let broken = other("return x.key > y.key", "")?;
-    let mut adapters = adapters()?;
+    let mut adapters = adapters::open()?;
     adapters.truncate(1);
     for adapter in &mut adapters {
         adapter.kernels = Kernels::new(broken.sources(false, || 0.0)?);
@@ -151,29 +151,13 @@ fn no_ground(_: &Cage) -> Result<(), Failed> {
     )
 }
 
-fn adapters() -> Result<Vec<Adapter>, Failed> {
-    let Adapters { open, broken } = Adapters::open(&[]);
-    // What is skipped in a replay would go untested here in silence.
-    if let Some(broken) = broken.first() {
-        return Err(broken.to_string().into());
-    }
-    if open.is_empty() {
-        return Err(
-            "no GPU adapter: `./x setup` installs two software drivers, \
-                    `./x doctor` says what is missing"
-                .into(),
-        );
-    }
-    Ok(open)
-}
-
 fn open() -> Result<Lab, Failed> {
-    Ok(Lab::new(adapters()?))
+    Ok(Lab::new(adapters::open()?))
 }
 
 /// A device that goes away: every leg on it fails, and says why.
 fn lose_device() -> Result<(), Failed> {
-    let adapters = adapters()?;
+    let adapters = adapters::open()?;
     for adapter in &adapters {
         adapter.gpu.device.destroy();
     }

@@ -4,7 +4,12 @@
 use std::ops::{Deref, DerefMut};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-use triptych_harness::replay::gpu::{Adapter, Adapters};
+use triptych_harness::replay::gpu::Adapter;
+
+#[path = "adapters.rs"]
+mod adapters;
+
+use adapters::open;
 
 /// How many tests may run at once, each on devices of its own: what the spec and
 /// Embree do for one scene fills the time in which another waits for its device.
@@ -62,22 +67,6 @@ impl Devices {
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-fn open() -> Result<Vec<Adapter>, String> {
-    let Adapters { open, broken } = Adapters::open(&[]);
-    // What is skipped in a replay would go untested here in silence.
-    if let Some(broken) = broken.first() {
-        return Err(broken.to_string());
-    }
-    if open.is_empty() {
-        return Err(
-            "no GPU adapter: `./x setup` installs two software drivers, \
-                    `./x doctor` says what is missing"
-                .into(),
-        );
-    }
-    Ok(open)
 }
 
 impl Lent<'_> {

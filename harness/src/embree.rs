@@ -6,12 +6,15 @@
 //! of the scene, as loaded. Embree computes in `f32`; how far that can be trusted is
 //! derived, not measured ([`bound`], [`world::bound`]).
 //!
-//! The library is called through its bindings in [`mod@bare`] and, for its version, in
-//! [`mod@library`]. They are older than it: Embree 4.4 writes an accepted hit past the end
-//! of their hit structure, so it gets more room there.
+//! The embree4-rs wrapper serves for building and tracing; only the library's
+//! version ([`mod@library`]) and what its cost is measured beside ([`mod@bare`]) need the
+//! bindings below it. Those are older than the library: Embree 4.4 writes an accepted hit
+//! past the end of the wrapper's hit structure. Here no hit is ever accepted; the closest
+//! hit must not be asked of [`embree4_rs::CommittedScene::intersect_1`].
 
 pub mod bare;
 pub mod bound;
+mod collect;
 pub mod library;
 pub mod rounded;
 pub mod scene;

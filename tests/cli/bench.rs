@@ -1,4 +1,4 @@
-//! `triptych bench`: what it writes, and what it refuses. No time is judged.
+//! `triptych bench abuffer`: what it writes, and what it refuses. No time is judged.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,16 +6,7 @@ use std::path::PathBuf;
 
 use triptych_harness::bench::csv::COLUMNS;
 
-use super::{Place, SCENE, repository};
-
-/// The scene with layers in an order that hides the nearest ones, twelve of them.
-fn deep() -> String {
-    let deep = SCENE
-        .replace("layers = 2", "layers = 12")
-        .replace("spacing = 1", "spacing = 0.25");
-    let deep = deep.replace("fragments = 32", "fragments = 192");
-    deep.replace("layers_max = 2", "layers_max = 12")
-}
+use super::{Place, deep, repository};
 
 /// A file of results as rows of named values.
 fn rows(text: &str) -> Vec<BTreeMap<&'static str, &str>> {
@@ -151,6 +142,30 @@ fn a_wrong_kernel_is_named_and_not_timed() {
 }
 
 /// All layers have one colour, so that every order gives the same picture.
+/// No frame of the scene has anything opaque: the kernel was not measured.
+#[test]
+fn a_kernel_that_never_ran_is_refused() {
+    let place = Place::new("bench-idle");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    place.write("mine.wgsl", "//#import abuffer\n");
+    let ran = place.run(&[
+        "bench",
+        "abuffer",
+        "deep",
+        "--runs",
+        "1",
+        "--adapter",
+        "llvmpipe",
+        "--kernel",
+        "opaque=mine.wgsl",
+    ]);
+    let line = ran.expect(2).stderr;
+    assert!(
+        line.contains("no scene that was measured has opaque"),
+        "{line}"
+    );
+}
+
 #[test]
 fn a_kernel_that_does_not_sort_is_found() {
     let place = Place::new("bench-sort");
@@ -226,62 +241,4 @@ fn nothing_measured_is_no_success() {
     );
     let why = "not measured: abuffer/opaque: nothing transparent is seen";
     assert!(ran.stdout.contains(why), "{}", ran.stdout);
-}
-
-#[test]
-fn legs_are_held_against_each_other() {
-    let place = Place::new("bench-legs");
-    place.write("corpus/abuffer/deep/scene.toml", &deep());
-    let command = ["bench", "legs", "deep", "--adapter", "llvmpipe"];
-    let files = ["--runs", "2", "--out", "out"];
-    // Met or not, a benchmark judges no machine.
-    let ran = place.run(&[&command[..], &files].concat()).expect(0);
-    assert!(
-        ran.stdout.contains(" of 4 demands are met"),
-        "{}",
-        ran.stdout
-    );
-    let files = fs::read_dir(place.root.join("out")).expect("a folder");
-    let mut files: Vec<_> = files.map(|f| f.expect("a file").path()).collect();
-    files.sort();
-    let [csv, page] = &files[..] else {
-        panic!("values and a page: {files:?}");
-    };
-    let values = fs::read_to_string(csv).expect("values");
-    let has = |start: &str| {
-        values
-            .lines()
-            .filter(|line| line.starts_with(start))
-            .count()
-    };
-    assert_eq!(
-        values.lines().count(),
-        9,
-        "four of stages, four of hits: {values}"
-    );
-    assert_eq!(has("abuffer/deep,cover,192,"), 2, "{values}");
-    assert_eq!(has("abuffer/deep,build,192,spec,2,host,"), 1, "{values}");
-    assert_eq!(has("abuffer/deep,hits,"), 4, "{values}");
-    let page = fs::read_to_string(page).expect("a page");
-    assert!(page.starts_with("# Leg against leg, "), "{page}");
-}
-
-#[test]
-fn legs_without_a_fragment_are_no_success() {
-    let place = Place::new("bench-legs-nothing");
-    let away = deep().replace("target = [0, 0, 0]", "target = [0, 0, 9]");
-    place.write("corpus/abuffer/away/scene.toml", &away);
-    let ran = place
-        .run(&["bench", "legs", "away", "--runs", "1"])
-        .expect(2);
-    assert!(
-        ran.stderr.contains("nothing was measured"),
-        "{}",
-        ran.stderr
-    );
-    assert!(
-        ran.stdout.contains("not measured: abuffer/away"),
-        "{}",
-        ran.stdout
-    );
 }

@@ -1,15 +1,6 @@
 //! `--kernel`: a user's WGSL in place of ours.
 
-use super::{Place, SCENE, repository};
-
-/// The scene with twelve layers, numbered from back to front.
-fn deep() -> String {
-    let deep = SCENE
-        .replace("layers = 2", "layers = 12")
-        .replace("spacing = 1", "spacing = 0.25");
-    let deep = deep.replace("fragments = 32", "fragments = 192");
-    deep.replace("layers_max = 2", "layers_max = 12")
-}
+use super::{Place, SCENE, deep, repository};
 
 /// Our own kernel, as a file of a user's that only imports it.
 const OURS: &str = "//#import abuffer\n";

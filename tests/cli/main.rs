@@ -9,6 +9,7 @@ mod contributor;
 mod corpus;
 mod drivers;
 mod kernel;
+mod legs;
 mod mistakes;
 mod mutants;
 mod output;
@@ -130,6 +131,15 @@ edge = 1
 fragments = 32
 layers_max = 2
 "#;
+
+/// The scene with twelve layers, numbered from back to front: the nearest come last.
+fn deep() -> String {
+    let deep = SCENE
+        .replace("layers = 2", "layers = 12")
+        .replace("spacing = 1", "spacing = 0.25");
+    let deep = deep.replace("fragments = 32", "fragments = 192");
+    deep.replace("layers_max = 2", "layers_max = 12")
+}
 
 /// A scene of a packaged mesh.
 const PACKAGED: &str = r#"

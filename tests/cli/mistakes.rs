@@ -186,6 +186,9 @@ fn nothing_judged_is_no_success() {
     assert_parts(&mistake(&place, &arguments), &["nothing was compared"]);
     let json = std::fs::read_to_string(place.root.join("out.json")).expect("written");
     assert_parts(&json, &["class edge", "\"compared\":0", "\"admitted\":1"]);
+    // Nor does a report make one of it.
+    let line = mistake(&place, &["report", "out.json"]);
+    assert_parts(&line, &["nothing was compared"]);
 }
 
 #[test]

@@ -94,6 +94,8 @@ pub fn added_reviewed_and_in_shards() -> Result<(), Failed> {
     place.write("corpus/meshes.lock", &lock)?;
     place.write("corpus/README.md", "| `abuffer/` | purpose |\n|---|---|\n")?;
     place.write("corpus/abuffer/wrong/scene.toml", WRONG)?;
+    let broken = WRONG.replace("generate.stack", "generate.stick");
+    place.write("corpus/raster/broken/scene.toml", &broken)?;
     let mesh = place.write("mine.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")?;
     let new = New {
         family: "abuffer".into(),
@@ -112,6 +114,10 @@ pub fn added_reviewed_and_in_shards() -> Result<(), Failed> {
     }
     if place.test("abuffer/wrong", 1, "shards")? {
         return Err("five fragments were found where there are four".into());
+    }
+    // What cannot be replayed has no rows that could agree.
+    if place.test("raster/broken", 1, "broken")? || place.merged("broken").is_ok() {
+        return Err("a scene that does not load came to a verdict".into());
     }
     let (one, shards) = (place.merged("one")?, place.merged("shards")?);
     if one.0 == 0 {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use triptych_spec::abuffer::{Lists, Node, Opaque};
+use triptych_spec::abuffer::{Lists, Opaque};
 
 use super::buffers::{Buffers, HEADER};
 use super::{BandResult, Options, Times};
@@ -187,26 +187,7 @@ impl Run<'_, '_> {
     }
 
     fn lists(&self, b: &Buffers) -> Result<Lists, GpuError> {
-        let gpu = self.gpu();
-        let attempts = gpu.read::<u32>(&b.counter, 1)?[0];
-        let stored = attempts.min(self.capacity) as usize;
-        let node = |[key, next, prim, mask]: [u32; 4]| Node {
-            key,
-            next,
-            prim,
-            mask,
-        };
-        Ok(Lists {
-            heads: self.read(&b.heads)?,
-            nodes: gpu
-                .read::<[u32; 4]>(&b.nodes, stored)?
-                .into_iter()
-                .map(node)
-                .collect(),
-            colours: gpu.read(&b.colours, stored)?,
-            attempts,
-            capacity: self.capacity,
-        })
+        b.lists(self.gpu(), self.pixels(), self.capacity)
     }
 
     /// One word per pixel of the band.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use triptych_spec::abuffer::{EOL, Lists, NOTHING};
+use triptych_spec::abuffer::{EOL, Lists, NOTHING, Node};
 
 use super::Given;
 use crate::context::Gpu;
@@ -111,6 +111,26 @@ impl Buffers {
             colours: gpu.upload("colours", &part.colours)?,
             picture: gpu.storage("picture", 16 * count)?,
             progress: gpu.storage("progress", HEADER + PROGRESS * count)?,
+        })
+    }
+
+    /// What the lists of so many pixels hold.
+    pub(super) fn lists(&self, gpu: &Gpu, pixels: u32, capacity: u32) -> Result<Lists, GpuError> {
+        let attempts = gpu.read::<u32>(&self.counter, 1)?[0];
+        let stored = attempts.min(capacity) as usize;
+        let nodes: Vec<[u32; 4]> = gpu.read(&self.nodes, stored)?;
+        let node = |[key, next, prim, mask]: [u32; 4]| Node {
+            key,
+            next,
+            prim,
+            mask,
+        };
+        Ok(Lists {
+            heads: gpu.read(&self.heads, pixels as usize)?,
+            nodes: nodes.into_iter().map(node).collect(),
+            colours: gpu.read(&self.colours, stored)?,
+            attempts,
+            capacity,
         })
     }
 

@@ -1,6 +1,6 @@
 //! The A-buffer of a whole target, set up once and run many times, each part timed.
 
-use triptych_spec::abuffer::{Lists, Node};
+use triptych_spec::abuffer::Lists;
 
 use super::attempt::dispatches;
 use super::buffers::{self, Buffers};
@@ -166,24 +166,9 @@ impl<'r, 'g> Timed<'r, 'g> {
 
     /// The lists as they are.
     fn lists(&self) -> Result<Lists, GpuError> {
-        let gpu = self.rasterizer.gpu;
         let pixels = self.frame.width * self.frame.rows;
-        let attempts = gpu.read::<u32>(&self.buffers.counter, 1)?[0];
-        let stored = attempts.min(self.frame.capacity) as usize;
-        let nodes: Vec<[u32; 4]> = gpu.read(&self.buffers.nodes, stored)?;
-        let node = |[key, next, prim, mask]: [u32; 4]| Node {
-            key,
-            next,
-            prim,
-            mask,
-        };
-        Ok(Lists {
-            heads: gpu.read(&self.buffers.heads, pixels as usize)?,
-            nodes: nodes.into_iter().map(node).collect(),
-            colours: gpu.read(&self.buffers.colours, stored)?,
-            attempts,
-            capacity: self.frame.capacity,
-        })
+        let gpu = self.rasterizer.gpu;
+        self.buffers.lists(gpu, pixels, self.frame.capacity)
     }
 
     /// Sets up what follows the lists, of which the longest has `longest` nodes for

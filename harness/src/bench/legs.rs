@@ -8,7 +8,7 @@
 //! replay. Not timed: transfers, compilation, emptying an adapter's lists.
 //!
 //! Embree is asked for every hit of the ray through every sample, four times: by
-//! [`crate::embree::EmbreeScene::bare`], which is one call of `rtcIntersect1` with the
+//! [`crate::embree::bare::Bare::trace`], which is one call of `rtcIntersect1` with the
 //! filter that collects; by `hits`, as a replay asks; again bare, on all threads; and by
 //! [`crate::compare::embree::compare`], which is the leg of a replay. Tree, rays, filter
 //! and threads are the same.

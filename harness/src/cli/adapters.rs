@@ -4,7 +4,6 @@ use std::fmt::Display;
 
 use anyhow::Context;
 
-use super::Verdict;
 use crate::output::complain;
 use crate::replay::gpu::Adapters;
 
@@ -22,8 +21,21 @@ pub(super) fn adapters(wanted: &[String]) -> anyhow::Result<Adapters> {
     Ok(adapters)
 }
 
+/// The adapters that were asked for, of which some work; of the others it is said why not.
+///
+/// # Errors
+/// None works.
+pub(super) fn usable(wanted: &[String]) -> anyhow::Result<Adapters> {
+    let found = adapters(wanted)?;
+    if found.open.is_empty() {
+        return could_not_run(found.broken);
+    }
+    found.broken.iter().for_each(complain);
+    Ok(found)
+}
+
 /// Says of everything that a run could not do without why, a line each.
-pub(super) fn could_not_run(mut reasons: Vec<impl Display>) -> anyhow::Result<Verdict> {
+pub(super) fn could_not_run<T>(mut reasons: Vec<impl Display>) -> anyhow::Result<T> {
     let last = reasons.pop().context("no reason")?;
     for reason in reasons {
         complain(reason);

@@ -8,7 +8,7 @@ use anyhow::Context;
 use triptych_gpu::raster::Path;
 
 use super::Verdict;
-use super::adapters::{adapters, could_not_run};
+use super::adapters::{could_not_run, usable};
 use super::results::Results;
 use super::run_info::today;
 use crate::corpus;
@@ -40,12 +40,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let selected = select(mutants(), &args.patterns).map_err(anyhow::Error::msg)?;
-    let found = adapters(&args.adapter)?;
-    if found.open.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
-    let mut lab = Lab::new(found.open);
+    let mut lab = Lab::new(usable(&args.adapter)?.open);
     let mut legs = Vec::new();
     for name in lab.names() {
         let paths = [Path::Compute, Path::Fragment, Path::Native];

@@ -1,28 +1,27 @@
-//! Embree's C interface as far as it is needed here: a scene of triangles, and all hits
-//! of a ray.
+//! Bare calls of Embree's C interface, for `triptych bench legs` alone: what our own cost
+//! is measured beside them.
 //!
-//! The bindings are older than the library, which is why a hit gets more room than they
-//! know of ([`Room`]). [`Bare::trace`] is one call of `rtcIntersect1` and nothing else;
-//! whether Embree reports an error is asked when many rays are through ([`Bare::check`]).
-
-use std::ffi::c_void;
+//! The same triangles, options, rays and filter as the leg's ([`super::collect`]), without
+//! the wrapper, which asks for the device's error after every ray.
 
 use embree4_sys::{
-    RTC_INVALID_GEOMETRY_ID, RTCBufferType, RTCBuildQuality, RTCDevice, RTCError, RTCFeatureFlags,
-    RTCFilterFunctionNArguments, RTCFormat, RTCGeometry, RTCGeometryType, RTCHit,
-    RTCIntersectArguments, RTCRay, RTCRayHit, RTCRayQueryContext, RTCRayQueryFlags, RTCScene,
-    RTCSceneFlags, rtcAttachGeometry, rtcCommitGeometry, rtcCommitScene, rtcGetDeviceError,
-    rtcIntersect1, rtcNewDevice, rtcNewGeometry, rtcNewScene, rtcReleaseDevice, rtcReleaseGeometry,
-    rtcReleaseScene, rtcSetNewGeometryBuffer, rtcSetSceneBuildQuality, rtcSetSceneFlags,
+    RTC_INVALID_GEOMETRY_ID, RTCBufferType, RTCDevice, RTCError, RTCFormat, RTCGeometry,
+    RTCGeometryType, RTCHit, RTCRayHit, RTCScene, rtcAttachGeometry, rtcCommitGeometry,
+    rtcCommitScene, rtcGetDeviceError, rtcIntersect1, rtcNewDevice, rtcNewGeometry, rtcNewScene,
+    rtcReleaseDevice, rtcReleaseGeometry, rtcReleaseScene, rtcSetNewGeometryBuffer,
+    rtcSetSceneBuildQuality, rtcSetSceneFlags,
 };
+use triptych_spec::vertex::Primitives;
 
 use super::EmbreeError;
-use super::scene::{CONFIG, Hit};
+use super::collect::{CONFIG, Collector, QUALITY, check, flags};
+use super::scene::{Depth, Hit, corners, ray};
 
 /// Triangles, committed to Embree.
 pub struct Bare {
     device: RTCDevice,
     scene: RTCScene,
+    bits: u32,
 }
 
 /// A ray with room for its hit: since 4.4 Embree's own is four bytes longer than that of
@@ -33,32 +32,19 @@ struct Room {
     spare: [u32; 4],
 }
 
-/// A query context with the vector that the filter fills.
-///
-/// Embree passes the pointer through, so a context may be longer than Embree
-/// knows. `instance_primitive` is a field that newer headers than embree4-sys's
-/// have in the context (`instPrimID`): the library reads it.
-#[repr(C)]
-struct Collector<'a> {
-    context: RTCRayQueryContext,
-    instance_primitive: u32,
-    hits: &'a mut Vec<Hit>,
-}
-
 impl Bare {
-    /// Copies triangles and builds the tree: robust mode, filter in the arguments, medium
-    /// quality (high quality may report a triangle of several leaves several times).
+    /// Copies the spec's snapped triangles and builds the tree.
     ///
     /// # Errors
     /// If a triangle names a corner that is not there, if there are none, or if Embree
     /// reports an error.
     #[expect(unsafe_code, reason = "a foreign interface")]
-    pub fn new(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result<Self, EmbreeError> {
-        let named = triangles.iter().flatten();
-        if let Some(corner) = named.max().filter(|c| **c as usize >= corners.len()) {
-            let reason = format!("no corner {corner}, there are {}", corners.len());
-            return Err(EmbreeError::new("check of the triangles", reason));
-        }
+    pub fn new(primitives: &Primitives) -> Result<Self, EmbreeError> {
+        let (corners, triangles) = (
+            &corners(primitives, &Depth::new(primitives)),
+            &primitives.prims,
+        );
+        check(corners.len(), triangles)?;
         // SAFETY: CONFIG ends in NUL. `bare` owns device and scene from where they are made.
         // What Embree gives without an error is not null. The geometry is released here,
         // once, as the scene keeps a reference of its own; its items are what `copy` is told,
@@ -69,13 +55,16 @@ impl Bare {
                 return Err(EmbreeError::new("new device", "refused on this machine"));
             }
             let scene = rtcNewScene(device);
-            let bare = Self { device, scene };
+            let bare = Self {
+                device,
+                scene,
+                bits: primitives.bits,
+            };
             bare.check()?;
             let mesh = rtcNewGeometry(device, RTCGeometryType::TRIANGLE);
             bare.check()?;
-            let flags = RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS;
-            rtcSetSceneFlags(scene, flags);
-            rtcSetSceneBuildQuality(scene, RTCBuildQuality::MEDIUM);
+            rtcSetSceneFlags(scene, flags());
+            rtcSetSceneBuildQuality(scene, QUALITY);
             let copied = copy(mesh, RTCBufferType::VERTEX, RTCFormat::FLOAT3, corners)
                 && copy(mesh, RTCBufferType::INDEX, RTCFormat::UINT3, triangles);
             if copied {
@@ -92,24 +81,14 @@ impl Bare {
         }
     }
 
-    /// Adds every hit of a ray to `hits`, in the order in which Embree finds them; a
-    /// triangle may be reported more than once. False if a hit went past the filter.
+    /// One call: every hit of the ray through a pixel's sample is added to `hits`, in the
+    /// order in which Embree finds them; a triangle may be reported more than once. False if
+    /// a hit went past the filter.
     #[expect(unsafe_code, reason = "a foreign interface")]
-    pub fn trace(&self, ray: RTCRay, hits: &mut Vec<Hit>) -> bool {
-        let mut collector = Collector {
-            context: RTCRayQueryContext {
-                instID: [RTC_INVALID_GEOMETRY_ID],
-            },
-            instance_primitive: RTC_INVALID_GEOMETRY_ID,
-            hits,
-        };
-        let mut arguments = RTCIntersectArguments {
-            flags: RTCRayQueryFlags::INVOKE_ARGUMENT_FILTER,
-            feature_mask: RTCFeatureFlags(u32::MAX), // all: the default of Embree's initialiser
-            context: (&raw mut collector).cast(),
-            filter: Some(keep_and_reject),
-            intersect: None,
-        };
+    pub fn trace(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> bool {
+        let mut collector = Collector::new(hits);
+        let mut arguments = collector.arguments();
+        let ray = ray(column, row, self.bits);
         let hit = RTCHit::default();
         let mut room = Room {
             ray: RTCRayHit { ray, hit },
@@ -161,27 +140,6 @@ unsafe fn copy<T: Copy>(
                 .copy_from_nonoverlapping(items.as_ptr(), items.len());
         }
         !buffer.is_null()
-    }
-}
-
-/// The filter: notes the hit and rejects it, so that the ray goes on.
-#[expect(unsafe_code, reason = "called by Embree with raw pointers")]
-unsafe extern "C" fn keep_and_reject(arguments: *const RTCFilterFunctionNArguments) {
-    // SAFETY: Embree calls this inside `rtcIntersect1` with valid pointers and N = 1,
-    // for which ray and hit have the layout of the single structures (the fields
-    // read here lie at the same place in every Embree 4). The context is the
-    // `Collector` that `trace` borrows mutably for the length of that call, on
-    // this thread alone.
-    unsafe {
-        let arguments = &*arguments;
-        let collector = &mut *arguments.context.cast::<Collector<'_>>();
-        let hit = arguments.hit.cast::<c_void>().cast::<RTCHit>();
-        let ray = arguments.ray.cast::<c_void>().cast::<RTCRay>();
-        collector.hits.push(Hit {
-            prim: (*hit).primID,
-            t: (*ray).tfar,
-        });
-        *arguments.valid = 0;
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use embree4_sys::{RTCDeviceProperty, rtcGetDeviceProperty, rtcNewDevice, rtcReleaseDevice};
 
 use super::EmbreeError;
-use super::scene::CONFIG;
+use super::collect::CONFIG;
 
 /// The loaded library.
 #[derive(Clone, Debug, PartialEq, Eq)]

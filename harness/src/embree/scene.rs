@@ -1,20 +1,13 @@
 //! Snapped triangles as an Embree scene, and all hits of a ray.
 
+use embree4_rs::CommittedScene;
 use embree4_sys::RTCRay;
 use triptych_spec::raster::sample;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{Primitives, SUBPIXEL_BITS};
 
 use super::EmbreeError;
-use super::bare::Bare;
-
-/// How the device is configured, with the NUL that ends it.
-///
-/// SSE2 is part of x86-64 and of every build of Embree for it, so the same code
-/// runs on any machine (Embree's results depend on the instruction set: its
-/// issue 423). One thread builds, so the tree does not depend on the machine
-/// either; rays are traced on many threads by the comparer.
-pub(super) const CONFIG: &str = "isa=sse2,threads=1\0";
+use super::collect::{collect, commit};
 
 /// Coordinates beyond this are refused: differences and sums of two of them must
 /// be exact in `f32`. The guard rectangle keeps the spec's own far below.
@@ -29,34 +22,14 @@ pub struct Hit {
     pub t: f32,
 }
 
-impl Hit {
-    /// A number in the order of `(prim, t)`, of t that of [`f32::total_cmp`]: one comparison
-    /// instead of two.
-    fn place(&self) -> u64 {
-        let bits = self.t.to_bits();
-        let t = match self.t.is_sign_negative() {
-            true => !bits,
-            false => bits | 1 << 31,
-        };
-        u64::from(self.prim) << 32 | u64::from(t)
-    }
-}
-
 /// An observation by rays through samples: Embree's, or a test's corruption of it.
 pub trait RayHits: Sync {
     /// Replaces `hits` by every hit of the ray through a pixel's sample, in order of
     /// `(prim, t)`; a triangle may be reported more than once.
     ///
     /// # Errors
-    /// A pixel that is not there, or a hit that Embree kept to itself.
+    /// If Embree reports one.
     fn hits(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError>;
-
-    /// Asks whether all rays of this thread went well; to be asked once after many, as it
-    /// takes its time.
-    ///
-    /// # Errors
-    /// What Embree has to report since this was last asked.
-    fn check(&self) -> Result<(), EmbreeError>;
 }
 
 /// An observation in screen space.
@@ -75,37 +48,30 @@ pub trait ScreenHits: RayHits {
 pub struct Depth {
     base: i64,
     scale: f64,
-    /// Its reciprocal: both are powers of two, so products with either are exact.
-    inverse: f64,
 }
 
 impl Depth {
-    fn new(primitives: &Primitives) -> Self {
+    pub(super) fn new(primitives: &Primitives) -> Self {
         let keys = || primitives.snapped.iter().map(|corner| i64::from(corner[2]));
         let (near, far) = (keys().min().unwrap_or(0), keys().max().unwrap_or(0));
         let free = (far - near) / 8 + 1;
         let bits = (far - near + free).ilog2();
-        let scale = f64::from(1_u32 << bits.saturating_sub(20));
         Self {
             base: near - free,
-            scale,
-            inverse: 1.0 / scale,
+            scale: f64::from(1_u32 << bits.saturating_sub(20)),
         }
     }
 
     /// Embree's z of a corner. Rounds once; scaling by a power of two is exact.
     pub fn z(&self, key: i32) -> f32 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "a power of two above 2^-13"
-        )]
-        let inverse = self.inverse as f32;
-        (i64::from(key) - self.base) as f32 * inverse
+        #[expect(clippy::cast_possible_truncation, reason = "a power of two below 2^13")]
+        let scale = self.scale as f32;
+        (i64::from(key) - self.base) as f32 / scale
     }
 
     /// A corner's z before rounding.
     pub fn exact_z(&self, key: i32) -> f64 {
-        (i64::from(key) - self.base) as f64 * self.inverse
+        (i64::from(key) - self.base) as f64 / self.scale
     }
 
     /// The depth key, as a real number, at a distance along the ray.
@@ -122,7 +88,7 @@ impl Depth {
 /// The spec's snapped triangles, committed to Embree.
 pub struct EmbreeScene {
     /// Absent if there are no triangles: Embree refuses empty buffers.
-    scene: Option<Bare>,
+    scene: Option<CommittedScene>,
     depth: Depth,
     size: Size,
     bits: u32,
@@ -141,9 +107,7 @@ impl EmbreeScene {
         let scene = if primitives.prims.is_empty() {
             None
         } else {
-            let corner = |&[x, y, z]: &[i32; 3]| [x as f32, y as f32, depth.z(z)];
-            let corners: Vec<_> = primitives.snapped.iter().map(corner).collect();
-            Some(Bare::new(&corners, &primitives.prims)?)
+            Some(commit(&corners(primitives, &depth), &primitives.prims)?)
         };
         Ok(Self {
             scene,
@@ -152,24 +116,22 @@ impl EmbreeScene {
             bits: primitives.bits,
         })
     }
+}
 
-    /// One call of Embree and nothing else: every hit of the ray through a pixel's sample is
-    /// added to `hits`, in no order. False if a hit went past the filter.
-    pub fn bare(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> bool {
-        let Some(scene) = &self.scene else {
-            return true;
-        };
-        scene.trace(self.ray(column, row), hits)
-    }
+/// The snapped corners as Embree has them: x and y in sub-pixels, which are exact.
+pub(super) fn corners(primitives: &Primitives, depth: &Depth) -> Vec<[f32; 3]> {
+    let corner = |&[x, y, z]: &[i32; 3]| [x as f32, y as f32, depth.z(z)];
+    primitives.snapped.iter().map(corner).collect()
+}
 
-    fn ray(&self, column: u32, row: u32) -> RTCRay {
-        let [x, y] = [column, row].map(|pixel| sample(pixel, self.bits) as f32);
-        RTCRay {
-            org_x: x,
-            org_y: y,
-            dir_z: 1.0,
-            ..RTCRay::default()
-        }
+/// The ray through a pixel's sample.
+pub(super) fn ray(column: u32, row: u32, bits: u32) -> RTCRay {
+    let [x, y] = [column, row].map(|pixel| sample(pixel, bits) as f32);
+    RTCRay {
+        org_x: x,
+        org_y: y,
+        dir_z: 1.0,
+        ..RTCRay::default()
     }
 }
 
@@ -207,40 +169,6 @@ impl RayHits for EmbreeScene {
         let Some(scene) = &self.scene else {
             return Ok(());
         };
-        collect(scene, self.ray(column, row), hits)
-    }
-
-    fn check(&self) -> Result<(), EmbreeError> {
-        self.scene.as_ref().map_or(Ok(()), Bare::check)
-    }
-}
-
-/// Every hit of one ray, in order of `(prim, t)`.
-pub(super) fn collect(scene: &Bare, ray: RTCRay, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
-    if !scene.trace(ray, hits) {
-        return Err(EmbreeError::new("ray", "a hit went past the filter"));
-    }
-    hits.sort_unstable_by_key(Hit::place);
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Hit;
-
-    #[test]
-    fn places_are_in_order_of_triangle_and_distance() {
-        let all = [
-            f32::NEG_INFINITY,
-            -1.0,
-            -0.0,
-            0.0,
-            f32::MIN_POSITIVE,
-            2.0,
-            f32::NAN,
-        ];
-        let hits = [0, 1, u32::MAX].map(|prim| all.map(|t| Hit { prim, t }));
-        let places: Vec<u64> = hits.iter().flatten().map(Hit::place).collect();
-        assert!(places.is_sorted_by(|a, b| a < b), "{places:?}");
+        collect(scene, ray(column, row, self.bits), hits)
     }
 }

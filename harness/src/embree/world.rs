@@ -2,12 +2,13 @@
 
 pub mod bound;
 
+use embree4_rs::CommittedScene;
 use embree4_sys::RTCRay;
 use triptych_spec::scene::Scene;
 
 use super::EmbreeError;
-use super::bare::Bare;
-use super::scene::{Hit, RayHits, collect};
+use super::collect::{collect, commit};
+use super::scene::{Hit, RayHits};
 use super::view::View;
 
 /// World space as Embree has it: a power of two brings all coordinates below 1, which
@@ -46,7 +47,7 @@ impl World {
 /// A scene's triangles, committed to Embree.
 pub struct WorldScene {
     /// Absent if there are no triangles: Embree refuses empty buffers.
-    scene: Option<Bare>,
+    scene: Option<CommittedScene>,
     view: View,
     scale: f64,
 }
@@ -59,7 +60,7 @@ impl WorldScene {
     pub fn new(scene: &Scene, world: &World) -> Result<Self, EmbreeError> {
         let corners: Vec<[f32; 3]> = world.points.iter().map(|p| p.map(single)).collect();
         let prims: Vec<[u32; 3]> = scene.triangles.iter().map(|t| t.vertices).collect();
-        let committed = (!prims.is_empty()).then(|| Bare::new(&corners, &prims));
+        let committed = (!prims.is_empty()).then(|| commit(&corners, &prims));
         Ok(Self {
             scene: committed.transpose()?,
             view: world.view,
@@ -90,10 +91,6 @@ impl RayHits for WorldScene {
             ..RTCRay::default()
         };
         collect(scene, ray, hits)
-    }
-
-    fn check(&self) -> Result<(), EmbreeError> {
-        self.scene.as_ref().map_or(Ok(()), Bare::check)
     }
 }
 

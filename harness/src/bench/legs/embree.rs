@@ -6,6 +6,7 @@ use triptych_spec::vertex::{Primitives, SUBPIXEL_BITS, primitives};
 use super::super::{Progress, WARM_UP};
 use super::{Row, Taken, order};
 use crate::compare::embree::{BAND, EmbreeVote, compare};
+use crate::embree::bare::Bare;
 use crate::embree::{EmbreeError, EmbreeScene, RayHits};
 use crate::replay::spec::timed;
 use crate::scene::Loaded;
@@ -31,7 +32,8 @@ const MOST: f64 = 1.5;
 pub(super) fn measure(loaded: &Loaded, runs: u32, progress: &Progress) -> Result<Vec<Row>, String> {
     let spec = primitives(&loaded.scene, SUBPIXEL_BITS);
     let embree = EmbreeScene::new(&spec).map_err(|error| error.to_string())?;
-    let hits = bare(&embree, &spec, 0..spec.size.height);
+    let calls = Bare::new(&spec).map_err(|error| error.to_string())?;
+    let hits = bare(&calls, &spec, 0..spec.size.height);
     if hits == 0 {
         return Err("Embree hits nothing".to_owned());
     }
@@ -39,7 +41,7 @@ pub(super) fn measure(loaded: &Loaded, runs: u32, progress: &Progress) -> Result
     progress.begin(&format!("{}: Embree", loaded.name), WARM_UP + runs);
     for round in 0..WARM_UP + runs {
         for at in order(round, NAMES.len()) {
-            let (counted, time) = timed(|| ask(at, &embree, &spec));
+            let (counted, time) = timed(|| ask(at, &calls, &embree, &spec));
             match counted.map_err(|error| error.to_string())? {
                 Counted::Hits(counted) if counted != hits => {
                     return Err(format!("{}: {counted} hits, must be {hits}", NAMES[at]));
@@ -69,10 +71,15 @@ enum Counted {
 }
 
 /// Asks in one of the four ways.
-fn ask(how: usize, embree: &EmbreeScene, spec: &Primitives) -> Result<Counted, EmbreeError> {
+fn ask(
+    how: usize,
+    calls: &Bare,
+    embree: &EmbreeScene,
+    spec: &Primitives,
+) -> Result<Counted, EmbreeError> {
     let height = spec.size.height;
     match how {
-        0 => Ok(Counted::Hits(bare(embree, spec, 0..height))),
+        0 => Ok(Counted::Hits(bare(calls, spec, 0..height))),
         1 => {
             let (mut hits, mut counted) = (Vec::new(), 0);
             for row in 0..height {
@@ -81,13 +88,12 @@ fn ask(how: usize, embree: &EmbreeScene, spec: &Primitives) -> Result<Counted, E
                     counted += hits.len() as u64;
                 }
             }
-            embree.check()?;
             Ok(Counted::Hits(counted))
         }
         2 => {
             let bands = (0..height.div_ceil(BAND)).into_par_iter();
             let rows = |band: u32| band * BAND..((band + 1) * BAND).min(height);
-            let counted = bands.map(|band| bare(embree, spec, rows(band)));
+            let counted = bands.map(|band| bare(calls, spec, rows(band)));
             Ok(Counted::Hits(counted.sum()))
         }
         _ => compare(spec, embree).map(Counted::Vote),
@@ -95,12 +101,12 @@ fn ask(how: usize, embree: &EmbreeScene, spec: &Primitives) -> Result<Counted, E
 }
 
 /// Bare calls through all samples of some rows; gives the number of hits.
-fn bare(embree: &EmbreeScene, spec: &Primitives, rows: std::ops::Range<u32>) -> u64 {
+fn bare(calls: &Bare, spec: &Primitives, rows: std::ops::Range<u32>) -> u64 {
     let (mut hits, mut counted) = (Vec::new(), 0);
     for row in rows {
         for column in 0..spec.size.width {
             hits.clear();
-            embree.bare(column, row, &mut hits);
+            calls.trace(column, row, &mut hits);
             counted += hits.len() as u64;
         }
     }

@@ -7,12 +7,14 @@ use std::path::{Path as FilePath, PathBuf};
 use anyhow::Context;
 
 use super::super::Verdict;
-use super::super::adapters::{adapters, could_not_run};
+use super::super::adapters::usable;
 use super::super::kernel::{Kernels, kernels};
 use super::super::replay::PathName;
 use super::super::results::Results;
 use super::super::run_info::today;
-use crate::bench::{Bench, Options, Progress, SCENES, csv, markdown, run as measure, svg, table};
+use crate::bench::{
+    Bench, Options, Progress, Row, SCENES, csv, markdown, run as measure, svg, table,
+};
 use crate::corpus;
 use crate::mesh::Intake;
 use crate::output::{complain, stdout};
@@ -87,14 +89,10 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
         false => corpus::select(&entries, &args.patterns, args.exact)?,
     };
-    let mut found = adapters(&args.adapter)?;
-    if found.open.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
-    found.open.iter_mut().for_each(|a| a.use_foreign(&foreign));
+    let mut adapters = usable(&args.adapter)?.open;
+    adapters.iter_mut().for_each(|a| a.use_foreign(&foreign));
     let options = args.options();
-    let outcome = measure(&selected, &found.open, &options, &Progress::new());
+    let outcome = measure(&selected, &adapters, &options, &Progress::new());
     let outcome = outcome.map_err(anyhow::Error::msg)?;
     let mut out = stdout();
     for line in table::lines(&outcome.bench) {
@@ -108,11 +106,17 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     if !outcome.wrong.is_empty() {
         return Ok(Verdict::Diverge);
     }
-    let gpu = |row: &crate::bench::Row| row.leg != "spec";
+    let gpu = |row: &Row| row.leg != "spec";
     anyhow::ensure!(
         outcome.bench.rows.iter().any(gpu),
         "nothing was measured on an adapter; see what was not, and why"
     );
+    // The other stages are part of every frame.
+    let opaque = foreign.iter().find(|f| f.stage.name == "opaque");
+    let drawn = |row: &Row| row.parts.iter().any(|(part, _)| part == "opaque");
+    if let Some(Foreign { file, .. }) = opaque.filter(|_| !outcome.bench.rows.iter().any(drawn)) {
+        anyhow::bail!("--kernel opaque={file}: no scene that was measured has opaque triangles");
+    }
     Ok(Verdict::Agree)
 }
 

@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use anyhow::Context;
 
 use super::super::Verdict;
-use super::super::adapters::{adapters, could_not_run};
+use super::super::adapters::usable;
 use super::super::run_info::today;
 use super::abuffer::{folder, reports, write};
 use crate::bench::Progress;
 use crate::bench::legs::{Legs, Options, csv, lines, page, run as measure};
 use crate::corpus;
-use crate::output::{complain, stdout};
+use crate::output::stdout;
 use crate::text::clean;
 
 #[derive(clap::Args)]
@@ -49,17 +49,13 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         true => None,
         false => Some(corpus::select(&corpus, &args.patterns, args.exact)?),
     };
-    let found = adapters(&args.adapter)?;
-    if found.open.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
+    let adapters = usable(&args.adapter)?.open;
     let options = Options {
         scenes,
         runs: args.runs.get(),
         date: today(),
     };
-    let legs = measure(&corpus, &found.open, &options, &Progress::new());
+    let legs = measure(&corpus, &adapters, &options, &Progress::new());
     let legs = legs.map_err(anyhow::Error::msg)?;
     let mut out = stdout();
     for line in lines(&legs) {

@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::Context;
 
 use super::super::Verdict;
-use super::super::adapters::{adapters, could_not_run};
+use super::super::adapters::usable;
 use super::super::run_info::run_info;
 use crate::again::{Again, option};
 use crate::bench::Machine;
@@ -48,11 +48,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let sweeps = stress::select(&args.patterns).map_err(anyhow::Error::msg)?;
     let library = embree::library()?;
-    let found = adapters(&args.adapter)?;
-    if found.open.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
+    let found = usable(&args.adapter)?;
     let options = Options {
         broken: found.broken,
         ..Options::default()

@@ -38,7 +38,6 @@ pub(super) fn judge<P: Pairs, E: RayHits>(
     for (number, pixel) in pixels.enumerate() {
         sweep.pixel(pixel, known.of(number))?;
     }
-    embree.check()?;
     Ok(sweep.vote)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{embree, large, three, vote};
 use crate::cause::Cause;
-use crate::compare::embree::{Conflict, compare};
+use crate::compare::embree::Conflict;
 use crate::embree::scene::Depth;
 use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits, ScreenHits};
 
@@ -21,41 +21,6 @@ impl<F: Fn(u32, &mut Vec<Hit>) + Sync> RayHits for Changed<F> {
         (self.1)(row * 64 + column, hits);
         Ok(())
     }
-
-    fn check(&self) -> Result<(), EmbreeError> {
-        self.0.check()
-    }
-}
-
-/// Rays that go wrong, as Embree says when it is asked.
-struct Faulty(EmbreeScene);
-
-impl ScreenHits for Faulty {
-    fn depth(&self) -> Depth {
-        self.0.depth()
-    }
-}
-
-impl RayHits for Faulty {
-    fn hits(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
-        self.0.hits(column, row, hits)
-    }
-
-    fn check(&self) -> Result<(), EmbreeError> {
-        let step = "rays or triangles";
-        let reason = "OUT_OF_MEMORY".to_owned();
-        Err(EmbreeError { step, reason })
-    }
-}
-
-#[test]
-fn an_error_that_embree_reports_late_ends_the_vote() {
-    let spec = large(3);
-    let error = compare(&spec, &Faulty(embree(&spec))).expect_err("it is asked");
-    assert_eq!(
-        error.to_string(),
-        "Embree: rays or triangles: OUT_OF_MEMORY"
-    );
 }
 
 /// The pixel in the middle of the target.

@@ -48,10 +48,6 @@ impl<F: Fn(&mut Vec<Hit>) + Sync> RayHits for Changed<F> {
         (self.2)(hits);
         Ok(())
     }
-
-    fn check(&self) -> Result<(), EmbreeError> {
-        self.0.check()
-    }
 }
 
 /// A bug that the vote must see, for nothing else than what it is.
