@@ -10,7 +10,9 @@
 //!
 //! Every round runs every leg and every variant once, so that whatever slows a machine
 //! down for a while slows all of them. Before the first that counts come [`WARM_UP`]
-//! rounds, and more of them until each adapter was at work for [`WARM_UP_WORK`]. GPU times are the device's own timestamps. No picture is timed that was not
+//! rounds, and more of them until each adapter was at work for [`WARM_UP_WORK`]. A board's
+//! clocks fall while the spec has its turn, so it is at work for [`AWAKE`] before each of
+//! its own. GPU times are the device's own timestamps. No picture is timed that was not
 //! compared with the spec's, inside the spec's bound, before the rounds and after them.
 
 pub mod ceiling;
@@ -47,6 +49,10 @@ pub const WARM_UP: u32 = 2;
 /// How long each adapter is at work on a scene before the first round that counts, at
 /// least.
 pub const WARM_UP_WORK: Duration = Duration::from_secs(1);
+
+/// How long a board is at work before each round that counts: an H100 whose clocks fell in a
+/// pause of a tenth of a second took six times as long for a frame.
+pub const AWAKE: Duration = Duration::from_millis(100);
 
 /// The scenes that are measured if none is asked for, each expensive in its own way:
 /// opaque walls with a few layers of glass before them, as games have it; 871,414

@@ -1,15 +1,17 @@
 //! A GPU leg that is measured: first its pictures are compared, then it is timed.
 
+use std::time::Instant;
+
 use triptych_gpu::abuffer::{Options, Part, Timed};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Rasterizer;
 use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::abuffer::Lists;
 
-use super::Method;
 use super::error::Error;
 use super::grid::Grid;
 use super::scene::Measured;
+use super::{AWAKE, Method};
 use crate::compare::compare;
 use crate::compare::image;
 use crate::compare::lists::certify;
@@ -35,6 +37,8 @@ pub(super) struct Leg<'r> {
     pub(super) label: String,
     /// Name of its adapter.
     pub(super) adapter: &'r str,
+    /// Whether it has clocks of its own.
+    board: bool,
     pub(super) grid: &'r Grid,
     timed: Timed<'r, 'r>,
     timer: Timer,
@@ -80,6 +84,7 @@ impl<'r> Leg<'r> {
             timer: Timer::new(rasterizer.gpu, clock, spans)?,
             label,
             adapter: &rasterizer.gpu.name,
+            board: rasterizer.gpu.info.device_type != wgpu::DeviceType::Cpu,
             grid,
             timed,
             parts,
@@ -124,8 +129,13 @@ impl<'r> Leg<'r> {
         Ok(())
     }
 
-    /// Runs everything once, and keeps the times.
+    /// Runs everything once, and keeps the times; before it as often as wakes a board,
+    /// whose clocks fell while others had their turn.
     pub(super) fn round(&mut self, round: u32) -> Result<(), Refusal> {
+        let start = Instant::now();
+        while self.board && start.elapsed() < AWAKE {
+            self.warm_up(round)?;
+        }
         let seconds = self.timed.time(&self.timer, round)?;
         self.rounds.push(seconds);
         Ok(())

@@ -1,7 +1,7 @@
 //! A run as a page that can be committed beside others.
 
 use super::table::{COLUMNS, ceiling, cells, heading};
-use super::{Bench, Machine, WARM_UP, WARM_UP_WORK};
+use super::{AWAKE, Bench, Machine, WARM_UP, WARM_UP_WORK};
 use crate::text::markdown as text;
 
 impl Bench {
@@ -62,7 +62,7 @@ fn how(bench: &Bench) -> String {
     format!(
         "Medians of {} rounds, with minimum and maximum; every round runs every leg and variant \
          once. Before\nthem come at least {WARM_UP} rounds to warm up, and as many as keep each \
-         adapter at work for {} s on each scene.\nTimed is all from snapped triangles to the \
+         adapter at work for {} s on each scene; before each of its rounds a board is at work for {} ms.\nTimed is all from snapped triangles to the \
          picture, coverage included: empty\nthe lists, opaque surfaces, build, order, blend; no \
          transfers, no compilation. GPU times are timestamps\nof the device. Of each leg and number of \
          layers the faster method is shown, the CSV has both:\n*insertion* keeps the n nearest in \
@@ -74,5 +74,6 @@ fn how(bench: &Bench) -> String {
          where all data fit in a cache, as on tiny scenes, it can\nexceed 100 %.",
         bench.runs,
         WARM_UP_WORK.as_secs(),
+        AWAKE.as_millis(),
     )
 }
