@@ -2,7 +2,7 @@
 //!
 //! The driver is handed clip space as `f32`; these numbers are the input, and exact. The
 //! triangle on the screen follows in `f64`, clipped to the view. What the driver does
-//! before it rasterises puts a corner elsewhere by at most a *reach* ([`reach`]) and one
+//! before it rasterises puts a corner elsewhere by at most a *reach* (module `reach`) and one
 //! step of its grid, whichever way it rounds; [`Region`] says what it then must, may and
 //! must not cover. A triangle whose reach exceeds [`REACH_MAX`] is not judged, and counted:
 //! it is cut so near the eye that rounding decides where it is.

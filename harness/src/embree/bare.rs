@@ -1,7 +1,7 @@
 //! Bare calls of Embree's C interface, for `triptych bench legs` alone: what our own cost
 //! is measured beside them.
 //!
-//! The same triangles, options, rays and filter as the leg's ([`super::collect`]), without
+//! The same triangles, options, rays and filter as the leg's (`embree::collect`), without
 //! the wrapper, which asks for the device's error after every ray.
 
 use embree4_sys::{
