@@ -1,5 +1,8 @@
 //! Laws of bounded numbers: every evaluation in `f32` that WGSL allows stays inside.
 
+#[path = "bound/closed_forms.rs"]
+mod closed_forms;
+
 use proptest::prelude::*;
 use triptych_spec::bound::{Bounded, Real};
 
