@@ -74,6 +74,45 @@ fn target() -> impl Strategy<Value = Size> {
     (1_u32..2049, 1_u32..2049).prop_map(|(width, height)| Size { width, height })
 }
 
+#[test]
+fn the_guard_is_centred_on_the_target() {
+    for side in 1..=2048 {
+        let before = -guard_origin(side);
+        let after = GUARD - before - side.cast_signed();
+        assert!(
+            matches!(after - before, 0 | 1),
+            "{side}: {before} and {after}"
+        );
+    }
+}
+
+/// A point without a place, `w = 0`, is on no plane's outer side if all else is 0 too.
+#[test]
+fn nothing_is_left_of_a_triangle_with_a_corner_nowhere() {
+    let size = Size {
+        width: 8,
+        height: 8,
+    };
+    let (there, nowhere) = ([4.0, 4.0, 0.5, 1.0], [0.0; 4]);
+    let beside = [6.0, 5.0, 0.25, 1.0];
+    assert_eq!(
+        cut(size, [there, beside, there]).len(),
+        3,
+        "all three are visible"
+    );
+    for corners in [
+        [there, beside, nowhere],
+        [nowhere, there, beside],
+        [nowhere; 3],
+    ] {
+        assert_eq!(
+            cut(size, corners),
+            Vec::<Position<f64>>::new(),
+            "{corners:?}"
+        );
+    }
+}
+
 /// The snapped corners of each source triangle's pieces.
 fn pieces(world: &World) -> Vec<Vec<[[i32; 3]; 3]>> {
     let p = primitives(&world.scene(), 8);
@@ -99,6 +138,8 @@ proptest! {
         prop_assert_eq!(&ends, &visible_ends(size, b, a));
         for corners in [[a, b, c], [b, a, c], [c, b, a], [b, a, d], [a, b, d], [d, a, b]] {
             let polygon = cut(size, corners);
+            prop_assert!(polygon.iter().all(|p| p[3] > 0.0), "all have a place: {polygon:?}");
+            prop_assert!(!matches!(polygon.len(), 1 | 2), "a polygon: {polygon:?}");
             // Only what touches w = 0 vanishes with a visible edge.
             prop_assert!(polygon.len() >= 3 || ends.is_empty());
             let points: Vec<_> = polygon.iter().map(bits).collect();

@@ -152,6 +152,11 @@ fn fractions_end_where_their_range_does() {
     let strayed = 0.25 * difference / (4.0 - difference);
     let bound = strayed + 2.5 * U * (0.25 + strayed) + TINY;
     same(exact(1.0).fraction(exact(-3.0)), 0.25, bound);
+    // -1 / 8 is moved to the range's end, and may be seen as far away as it was.
+    let difference = 3.0 + 11.0 * U + TINY;
+    let strayed = (2.0 + 0.125 * difference) / (8.0 - difference);
+    let bound = strayed + 2.5 * U * (0.125 + strayed) + TINY + 0.125;
+    same(number(-1.0, 2.0).fraction(number(-9.0, 1.0)), 0.0, bound);
     // Signs that differ in an evaluation alone, and a divisor below all that WGSL defines.
     let outside = number(-1.0, 2.0).fraction(number(-3.0, 4.0));
     same(outside, 0.0, 1.0 + 4.0 * U);
