@@ -3,6 +3,8 @@
 //! | module | laws |
 //! |---|---|
 //! | `bound` | whatever rounding, fusing, flushing and order WGSL allows stays inside the bounds |
+//! | `bound::closed_forms` | bounds worked out by hand |
+//! | `matrix` | quarter turns; products |
 //! | `vertex` | neighbours share clip points; powers of two; permutation; translation; ranges; what is visible stays |
 //! | `raster` | brute force; permutation; translation; refinement; winding |
 //! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
@@ -24,6 +26,8 @@ mod gpu;
 mod grid;
 #[path = "laws/loose.rs"]
 mod loose;
+#[path = "laws/matrix.rs"]
+mod matrix;
 #[path = "laws/raster.rs"]
 mod raster;
 #[path = "laws/vertex.rs"]
