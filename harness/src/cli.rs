@@ -12,6 +12,7 @@ mod mutants;
 mod plan;
 mod replay;
 mod report;
+mod reports;
 mod results;
 mod run_info;
 

@@ -1,23 +1,19 @@
 //! `triptych mutants`.
 
 use std::io::Write;
-use std::path::{Path as FilePath, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Context;
 use triptych_gpu::raster::Path;
 
-use super::Verdict;
 use super::adapters::{could_not_run, usable};
 use super::results::Results;
 use super::run_info::today;
-use crate::corpus;
+use super::{Verdict, reports};
 use crate::json::{self, MutantRun};
 use crate::mutants::{Columns, Lab, Matrix, mutants, select};
 use crate::output::{self, complain};
-
-/// Beside the report, which shows it: the last run of all mutants.
-pub const FILE: &str = "mutants.json";
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -68,12 +64,8 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let matrix = Matrix::of(&cells, start.elapsed().as_secs_f64(), today());
     writeln!(out, "\n{}", matrix.headline())?;
     let run = MutantRun { matrix, cells };
-    let own = corpus::root()
-        .with_file_name("reports")
-        .join("out")
-        .join(FILE);
     let all_ran = args.patterns.is_empty() && failed.is_empty();
-    let whole = all_ran.then_some(own);
+    let whole = all_ran.then(reports::mutants);
     for file in args.json.iter().chain(&whole) {
         json::write_mutants(file, &run)
             .with_context(|| format!("cannot write {}", file.display()))?;
@@ -91,11 +83,8 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
 }
 
 /// The last run of mutants, for the report; a file that cannot be read is worth a remark.
-pub(super) fn last_mutants(
-    out: &FilePath,
-    results: &mut Results,
-) -> anyhow::Result<Vec<MutantRun>> {
-    let file = out.join(FILE);
+pub(super) fn last_mutants(results: &mut Results) -> anyhow::Result<Vec<MutantRun>> {
+    let file = reports::mutants();
     if !file.is_file() {
         return Ok(Vec::new());
     }

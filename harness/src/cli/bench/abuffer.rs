@@ -6,12 +6,12 @@ use std::path::{Path as FilePath, PathBuf};
 
 use anyhow::Context;
 
-use super::super::Verdict;
 use super::super::adapters::usable;
 use super::super::kernel::{Kernels, kernels};
 use super::super::replay::PathName;
 use super::super::results::Results;
 use super::super::run_info::today;
+use super::super::{Verdict, reports};
 use crate::bench::{
     Bench, Options, Progress, Row, SCENES, csv, markdown, run as measure, svg, table,
 };
@@ -24,7 +24,7 @@ use triptych_gpu::kernel::Foreign;
 use triptych_gpu::raster::Path;
 
 /// Among the results, what the report reads.
-pub const FILE: &str = "abuffer.json";
+const FILE: &str = "abuffer.json";
 
 /// The family whose stages are measured.
 const FAMILY: &str = "abuffer";
@@ -155,7 +155,7 @@ impl Args {
 
     /// Writes what was measured, in all forms. Results that are wrong are not among them.
     fn write(&self, bench: &Bench) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(|| folder(&reports()));
+        let folder = self.out.clone().unwrap_or_else(reports::bench);
         let json = serde_json::to_string_pretty(bench)? + "\n";
         let (csv, svg) = (csv::csv(bench), svg::file(bench));
         let stem = bench.stem();
@@ -186,21 +186,9 @@ pub(super) fn write(file: &FilePath, text: &str) -> std::io::Result<()> {
     std::fs::write(file, text)
 }
 
-pub(super) fn reports() -> PathBuf {
-    corpus::root().with_file_name("reports").join("out")
-}
-
-/// Where the results of a run go, in the folder of the report.
-pub(super) fn folder(out: &FilePath) -> PathBuf {
-    out.join("bench")
-}
-
 /// The last measurement, for the report; a file that cannot be read is worth a remark.
-pub(in crate::cli) fn last_bench(
-    out: &FilePath,
-    results: &mut Results,
-) -> anyhow::Result<Option<Bench>> {
-    let file = folder(out).join(FILE);
+pub(in crate::cli) fn last_bench(results: &mut Results) -> anyhow::Result<Option<Bench>> {
+    let file = reports::bench().join(FILE);
     if !file.is_file() {
         return Ok(None);
     }

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 
-use super::super::Verdict;
 use super::super::adapters::usable;
 use super::super::run_info::today;
-use super::abuffer::{folder, reports, write};
+use super::super::{Verdict, reports};
+use super::abuffer::write;
 use crate::bench::Progress;
 use crate::bench::legs::{Legs, Options, csv, lines, page, run as measure};
 use crate::corpus;
@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
 
 impl Args {
     fn write(&self, legs: &Legs) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(|| folder(&reports()));
+        let folder = self.out.clone().unwrap_or_else(reports::bench);
         let stem = legs.stem();
         for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
             let file = folder.join(format!("{stem}.{end}"));

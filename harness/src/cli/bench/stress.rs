@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use anyhow::Context;
 
-use super::super::Verdict;
 use super::super::adapters::usable;
 use super::super::run_info::run_info;
+use super::super::{Verdict, reports};
 use crate::again::{Again, option};
 use crate::bench::Machine;
 use crate::output::{complain, stdout};
@@ -16,7 +16,7 @@ use crate::replay::Options;
 use crate::replay::gpu::Adapter;
 use crate::row::Row;
 use crate::stress::{self, Measured, Sweep, Table};
-use crate::{corpus, embree, json};
+use crate::{embree, json};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -57,10 +57,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         args,
         adapters: found.open,
         options,
-        folder: args.out.clone().unwrap_or_else(|| {
-            let reports = corpus::root().with_file_name("reports");
-            reports.join("out").join("bench")
-        }),
+        folder: args.out.clone().unwrap_or_else(reports::bench),
     };
     let (all, mut wrong) = run.sweeps(&sweeps)?;
     if args.patterns.is_empty() {

@@ -8,6 +8,7 @@ use triptych_gpu::kernel::Foreign;
 use triptych_gpu::raster::Path;
 
 use super::super::adapters::adapters;
+use super::super::reports;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
@@ -125,11 +126,11 @@ impl Args {
     }
 
     /// The cache, unless all is to run.
-    pub(super) fn cache(&self, out: &std::path::Path) -> anyhow::Result<Option<Cache>> {
+    pub(super) fn cache(&self) -> anyhow::Result<Option<Cache>> {
         if self.no_cache || self.snapshot || self.dump.is_some() || !self.kernel.is_empty() {
             return Ok(None);
         }
-        let cache = Cache::open(&out.join("cache")).context("cannot open the cache")?;
+        let cache = Cache::open(&reports::out().join("cache")).context("cannot open the cache")?;
         Ok(Some(cache))
     }
 
