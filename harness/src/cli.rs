@@ -58,6 +58,12 @@ enum Command {
     /// Pack what a machine without a toolchain needs
     Bundle(bundle::Args),
     /// What is installed, which adapters there are, and what is missing
+    #[command(
+        after_help = "It also runs what drivers were found to do wrong, corpus/findings, on every \
+                      adapter: each must still be seen where it was found.\n\n\
+                      Exit code 1: something is missing, an adapter cannot be used, or a finding is \
+                      not as it was found."
+    )]
     Doctor,
     /// The scenes of the corpus
     List(list::Args),
