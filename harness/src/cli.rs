@@ -9,12 +9,14 @@ mod doctor;
 mod kernel;
 mod list;
 mod mutants;
+mod paths;
 mod plan;
 mod replay;
 mod report;
 mod reports;
 mod results;
 mod run_info;
+mod scenes;
 
 use std::process::ExitCode;
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::Context;
 use triptych_gpu::raster::Path;
 
-use super::adapters::{could_not_run, usable};
+use super::adapters::{OnAdapters, could_not_run};
 use super::results::Results;
 use super::run_info::today;
 use super::{Verdict, reports};
@@ -25,9 +25,8 @@ pub struct Args {
     /// Parts of names, scenes or causes; all mutants without one
     #[arg(value_name = "PATTERN")]
     patterns: Vec<String>,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
+    #[command(flatten)]
+    on: OnAdapters,
     /// Write one JSON object per mutant and leg, and a summary
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -36,7 +35,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let selected = select(mutants(), &args.patterns).map_err(anyhow::Error::msg)?;
-    let mut lab = Lab::new(usable(&args.adapter)?.open);
+    let mut lab = Lab::new(args.on.usable()?.open);
     let mut legs = Vec::new();
     for name in lab.names() {
         let paths = [Path::Compute, Path::Fragment, Path::Native];

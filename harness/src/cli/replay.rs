@@ -18,13 +18,13 @@ use super::run_info::run_info;
 use super::{Verdict, reports};
 use crate::cache::Cache;
 use crate::corpus::Entry;
-use crate::output::{complain, stdout};
+use crate::output::stdout;
 use crate::replay::gpu::Vertices;
 use crate::replay::{Outcome, replay};
 use crate::report::{self, ReportInput, RunInfo};
 use crate::row::Summary;
 use crate::{corpus, embree, snapshot};
-pub use args::{Args, PathName};
+pub use args::Args;
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         }
     };
     let entries = corpus::list(&corpus::root())?;
-    let selected = corpus::select(&entries, &args.patterns, args.exact)?;
+    let selected = args.scenes.select(&entries)?;
     let mut options = args.options()?;
     all_run(&foreign, &options)?;
     anyhow::ensure!(
@@ -44,10 +44,6 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         "--kernel has no part in --vertex hardware; leave one of them out"
     );
     let found = args.adapters(&options, &foreign)?;
-    if found.open.is_empty() && !found.broken.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
     let adapters = found.open;
     options.broken = found.broken;
     let library = if options.embree {

@@ -2,15 +2,15 @@
 
 use std::io::Write;
 use std::num::NonZeroU32;
-use std::path::{Path as FilePath, PathBuf};
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use super::super::adapters::usable;
 use super::super::kernel::{Kernels, kernels};
-use super::super::replay::PathName;
+use super::super::paths::OnPaths;
 use super::super::results::Results;
 use super::super::run_info::today;
+use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
 use crate::bench::{
     Bench, Options, Progress, Row, SCENES, csv, markdown, run as measure, svg, table,
@@ -21,7 +21,6 @@ use crate::output::{complain, stdout};
 use crate::registry::FAMILIES;
 use crate::text::clean;
 use triptych_gpu::kernel::Foreign;
-use triptych_gpu::raster::Path;
 
 /// Among the results, what the report reads.
 const FILE: &str = "abuffer.json";
@@ -39,19 +38,12 @@ const FILE_MAX: u64 = 1 << 26;
     triptych bench abuffer --adapter nvidia --path compute --out results\n\n\
     Every picture is compared with the spec's before and after it is timed. Exit code 1: one \
     is outside the spec's bound. 2: nothing could be measured.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; three real meshes without one")))]
 pub struct Args {
-    /// Parts of scene names, scene files, or meshes; three real meshes without one
-    #[arg(value_name = "PATTERN")]
-    patterns: Vec<String>,
-    /// Patterns are whole names
-    #[arg(long)]
-    exact: bool,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
-    /// Only this raster path (repeatable)
-    #[arg(long)]
-    path: Vec<PathName>,
+    #[command(flatten)]
+    scenes: Scenes,
+    #[command(flatten)]
+    on: OnPaths,
     /// Rounds that count, after two, and a second of each adapter, to warm up
     #[arg(long, value_name = "N", default_value = "15")]
     runs: NonZeroU32,
@@ -85,11 +77,11 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     all_run(&foreign)?;
     let entries = corpus::list(&corpus::root())?;
-    let selected = match args.patterns.is_empty() {
+    let selected = match args.scenes.patterns.is_empty() {
         true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
-        false => corpus::select(&entries, &args.patterns, args.exact)?,
+        false => args.scenes.select(&entries)?,
     };
-    let mut adapters = usable(&args.adapter)?.open;
+    let mut adapters = args.on.usable()?.open;
     adapters.iter_mut().for_each(|a| a.use_foreign(&foreign));
     let options = args.options();
     let outcome = measure(&selected, &adapters, &options, &Progress::new());
@@ -138,12 +130,8 @@ fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
 
 impl Args {
     fn options(&self) -> Options {
-        let path = |path: &PathName| path.path();
         Options {
-            paths: match self.path.is_empty() {
-                true => Path::ALL.to_vec(),
-                false => self.path.iter().map(path).collect(),
-            },
+            paths: self.on.paths(),
             runs: self.runs.get(),
             layers: match self.layers.is_empty() {
                 true => None,
@@ -179,7 +167,7 @@ impl Args {
     }
 }
 
-pub(super) fn write(file: &FilePath, text: &str) -> std::io::Result<()> {
+pub(super) fn write(file: &Path, text: &str) -> std::io::Result<()> {
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder)?;
     }

@@ -6,8 +6,9 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 
-use super::super::adapters::usable;
+use super::super::adapters::OnAdapters;
 use super::super::run_info::today;
+use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
 use super::abuffer::write;
 use crate::bench::Progress;
@@ -24,17 +25,12 @@ use crate::text::clean;
     Demands: the spec on one core takes no longer for a fragment than llvmpipe's hardware path, \
     and the Embree leg no more than 1.5 times as long as bare calls. Exit code 0 whether or not \
     they are met: a benchmark judges no machine. 2: nothing could be measured.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; without one three real meshes and 64 layers over a whole target")))]
 pub struct Args {
-    /// Parts of scene names, scene files, or meshes; without one three real meshes and 64
-    /// layers over a whole target
-    #[arg(value_name = "PATTERN")]
-    patterns: Vec<String>,
-    /// Patterns are whole names
-    #[arg(long)]
-    exact: bool,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
+    #[command(flatten)]
+    scenes: Scenes,
+    #[command(flatten)]
+    on: OnAdapters,
     /// Rounds that count, after two to warm up
     #[arg(long, value_name = "N", default_value = "15")]
     runs: NonZeroU32,
@@ -45,11 +41,11 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let corpus = corpus::list(&corpus::root())?;
-    let scenes = match args.patterns.is_empty() {
+    let scenes = match args.scenes.patterns.is_empty() {
         true => None,
-        false => Some(corpus::select(&corpus, &args.patterns, args.exact)?),
+        false => Some(args.scenes.select(&corpus)?),
     };
-    let adapters = usable(&args.adapter)?.open;
+    let adapters = args.on.usable()?.open;
     let options = Options {
         scenes,
         runs: args.runs.get(),

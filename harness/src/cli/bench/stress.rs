@@ -6,10 +6,10 @@ use std::time::Instant;
 
 use anyhow::Context;
 
-use super::super::adapters::usable;
+use super::super::adapters::OnAdapters;
 use super::super::run_info::run_info;
 use super::super::{Verdict, reports};
-use crate::again::{Again, option};
+use crate::again::Again;
 use crate::bench::Machine;
 use crate::output::{complain, stdout};
 use crate::replay::Options;
@@ -30,9 +30,8 @@ pub struct Args {
     /// without one
     #[arg(value_name = "PATTERN")]
     patterns: Vec<String>,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
+    #[command(flatten)]
+    on: OnAdapters,
     /// Write one JSON object per comparison, and a summary
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -48,7 +47,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let sweeps = stress::select(&args.patterns).map_err(anyhow::Error::msg)?;
     let library = embree::library()?;
-    let found = usable(&args.adapter)?;
+    let found = args.on.usable()?;
     let options = Options {
         broken: found.broken,
         ..Options::default()
@@ -136,9 +135,8 @@ impl Run<'_> {
             return Ok(());
         };
         let context = || format!("cannot write {}", file.display());
-        let legs = self.args.adapter.iter().map(|a| option("--adapter", a));
         let again = Again {
-            legs: legs.collect(),
+            legs: self.args.on.again().collect(),
             options: Vec::new(),
         };
         let mut writer = json::Writer::create(file).with_context(context)?;

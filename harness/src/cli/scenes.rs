@@ -1,0 +1,26 @@
+//! Which scenes a command is about.
+
+use crate::corpus::{self, Entry};
+use crate::error::InputError;
+
+/// Patterns of scenes; a command that takes others than the whole corpus without one says
+/// so in its help.
+#[derive(clap::Args)]
+pub struct Scenes {
+    /// Parts of scene names; all scenes without one
+    #[arg(value_name = "PATTERN")]
+    pub patterns: Vec<String>,
+    /// Patterns are whole names
+    #[arg(long)]
+    exact: bool,
+}
+
+impl Scenes {
+    /// The scenes that the patterns select, among these or outside the corpus.
+    ///
+    /// # Errors
+    /// A pattern that selects nothing.
+    pub fn select(&self, corpus: &[Entry]) -> Result<Vec<Entry>, InputError> {
+        corpus::select(corpus, &self.patterns, self.exact)
+    }
+}
