@@ -7,7 +7,8 @@ use std::time::Instant;
 use anyhow::Context;
 use triptych_gpu::raster::Path;
 
-use super::adapters::{OnAdapters, could_not_run};
+use super::adapters::could_not_run;
+use super::paths::OnPaths;
 use super::results::Results;
 use super::run_info::today;
 use super::{Verdict, reports};
@@ -19,14 +20,14 @@ use crate::output::{self, complain};
 #[command(after_help = "Examples:\n  \
     triptych mutants                         all of them, on every adapter\n  \
     triptych mutants tie-order --json o.json those with a cause, scene or name like it\n\n\
-    A run of all of them is shown by the reports of later replays. Exit code 1: one survives, \
+    A run of all of them, on all paths, is shown by the reports of later replays. Exit code 1: one survives, \
     or is killed in another way than the table says.")]
 pub struct Args {
     /// Parts of names, scenes or causes; all mutants without one
     #[arg(value_name = "PATTERN")]
     patterns: Vec<String>,
     #[command(flatten)]
-    on: OnAdapters,
+    on: OnPaths,
     /// Write one JSON object per mutant and leg, and a summary
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -34,11 +35,13 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
-    let selected = select(mutants(), &args.patterns).map_err(anyhow::Error::msg)?;
+    let paths = args.on.paths();
+    let selected = select(mutants(), &args.patterns, &paths).map_err(anyhow::Error::msg)?;
     let mut lab = Lab::new(args.on.usable()?.open);
     let mut legs = Vec::new();
     for name in lab.names() {
-        let paths = [Path::Compute, Path::Fragment, Path::Native];
+        let order = [Path::Compute, Path::Fragment, Path::Native];
+        let paths = order.iter().filter(|path| paths.contains(path));
         legs.extend(paths.map(|path| format!("gpu@{name}/{}", path.name())));
     }
     let rows = selected.iter().map(|m| (m.name.as_str(), m.scene.as_str()));
@@ -63,7 +66,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let matrix = Matrix::of(&cells, start.elapsed().as_secs_f64(), today());
     writeln!(out, "\n{}", matrix.headline())?;
     let run = MutantRun { matrix, cells };
-    let all_ran = args.patterns.is_empty() && failed.is_empty();
+    let all_ran = args.patterns.is_empty() && !args.on.is_limited() && failed.is_empty();
     let whole = all_ran.then(reports::mutants);
     for file in args.json.iter().chain(&whole) {
         json::write_mutants(file, &run)

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 
-use super::super::adapters::OnAdapters;
+use super::super::paths::OnPaths;
 use super::super::run_info::run_info;
 use super::super::{Verdict, reports};
 use crate::again::Again;
@@ -31,7 +31,7 @@ pub struct Args {
     #[arg(value_name = "PATTERN")]
     patterns: Vec<String>,
     #[command(flatten)]
-    on: OnAdapters,
+    on: OnPaths,
     /// Write one JSON object per comparison, and a summary
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -50,6 +50,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let found = args.on.usable()?;
     let options = Options {
         broken: found.broken,
+        paths: args.on.paths(),
         ..Options::default()
     };
     let run = Run {
@@ -136,7 +137,7 @@ impl Run<'_> {
         };
         let context = || format!("cannot write {}", file.display());
         let again = Again {
-            legs: self.args.on.again().collect(),
+            legs: self.args.on.again(),
             options: Vec::new(),
         };
         let mut writer = json::Writer::create(file).with_context(context)?;
