@@ -37,6 +37,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let paths = args.on.paths();
     let selected = select(mutants(), &args.patterns, &paths).map_err(anyhow::Error::msg)?;
+    let all = args.patterns.is_empty() && !args.on.is_limited();
+    let whole = all.then(reports::mutants);
+    reports::can_write(args.json.iter().chain(&whole))?;
     let mut lab = Lab::new(args.on.usable()?.open);
     let mut legs = Vec::new();
     for name in lab.names() {
@@ -66,8 +69,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let matrix = Matrix::of(&cells, start.elapsed().as_secs_f64(), today());
     writeln!(out, "\n{}", matrix.headline())?;
     let run = MutantRun { matrix, cells };
-    let all_ran = args.patterns.is_empty() && !args.on.is_limited() && failed.is_empty();
-    let whole = all_ran.then(reports::mutants);
+    let whole = whole.filter(|_| failed.is_empty());
     for file in args.json.iter().chain(&whole) {
         json::write_mutants(file, &run)
             .with_context(|| format!("cannot write {}", file.display()))?;

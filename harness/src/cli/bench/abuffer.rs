@@ -2,9 +2,7 @@
 
 use std::io::Write;
 use std::num::NonZeroU32;
-use std::path::{Path, PathBuf};
-
-use anyhow::Context;
+use std::path::PathBuf;
 
 use super::super::kernel::{Kernels, kernels};
 use super::super::paths::OnPaths;
@@ -81,6 +79,8 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
         false => args.scenes.select(&entries)?,
     };
+    let own = [&args.json, &args.csv, &args.svg].into_iter().flatten();
+    reports::can_write(own.chain([&args.folder().join(FILE)]))?;
     let mut adapters = args.on.usable()?.open;
     adapters.iter_mut().for_each(|a| a.use_foreign(&foreign));
     let options = args.options();
@@ -141,9 +141,13 @@ impl Args {
         }
     }
 
+    fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(reports::bench)
+    }
+
     /// Writes what was measured, in all forms. Results that are wrong are not among them.
     fn write(&self, bench: &Bench) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(reports::bench);
+        let folder = self.folder();
         let json = serde_json::to_string_pretty(bench)? + "\n";
         let (csv, svg) = (csv::csv(bench), svg::file(bench));
         let stem = bench.stem();
@@ -160,18 +164,11 @@ impl Args {
             .into_iter()
             .filter_map(|(to, text)| Some((to.clone()?, text)));
         for (file, text) in files.into_iter().chain(extra) {
-            write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
+            reports::write(&file, text)?;
         }
         writeln!(stdout(), "Results: {}", folder.display())?;
         Ok(())
     }
-}
-
-pub(super) fn write(file: &Path, text: &str) -> std::io::Result<()> {
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder)?;
-    }
-    std::fs::write(file, text)
 }
 
 /// The last measurement, for the report; a file that cannot be read is worth a remark.

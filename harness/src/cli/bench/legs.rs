@@ -2,15 +2,12 @@
 
 use std::io::Write;
 use std::num::NonZeroU32;
-use std::path::PathBuf;
-
-use anyhow::Context;
+use std::path::{Path, PathBuf};
 
 use super::super::adapters::OnAdapters;
 use super::super::run_info::today;
 use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
-use super::abuffer::write;
 use crate::bench::Progress;
 use crate::bench::legs::{Legs, Options, csv, lines, page, run as measure};
 use crate::corpus;
@@ -45,6 +42,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         true => None,
         false => Some(args.scenes.select(&corpus)?),
     };
+    let folder = args.out.clone().unwrap_or_else(reports::bench);
+    // The names of the files end with the machine's.
+    reports::can_write([&folder.join("legs")])?;
     let adapters = args.on.usable()?.open;
     let options = Options {
         scenes,
@@ -64,19 +64,16 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         !legs.rows.is_empty(),
         "nothing was measured; see what was not, and why"
     );
-    args.write(&legs)?;
+    write(&folder, &legs)?;
     Ok(Verdict::Agree)
 }
 
-impl Args {
-    fn write(&self, legs: &Legs) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(reports::bench);
-        let stem = legs.stem();
-        for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
-            let file = folder.join(format!("{stem}.{end}"));
-            write(&file, &text).with_context(|| format!("cannot write {}", file.display()))?;
-        }
-        writeln!(stdout(), "Results: {}", folder.display())?;
-        Ok(())
+fn write(folder: &Path, legs: &Legs) -> anyhow::Result<()> {
+    let stem = legs.stem();
+    for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
+        let file = folder.join(format!("{stem}.{end}"));
+        reports::write(&file, &text)?;
     }
+    writeln!(stdout(), "Results: {}", folder.display())?;
+    Ok(())
 }

@@ -46,6 +46,10 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let sweeps = stress::select(&args.patterns).map_err(anyhow::Error::msg)?;
+    let folder = args.out.clone().unwrap_or_else(reports::bench);
+    // The names of the files end with the machine's.
+    let own = [&args.json, &args.csv].into_iter().flatten();
+    reports::can_write(own.chain([&folder.join("stress")]))?;
     let library = embree::library()?;
     let found = args.on.usable()?;
     let options = Options {
@@ -57,7 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         args,
         adapters: found.open,
         options,
-        folder: args.out.clone().unwrap_or_else(reports::bench),
+        folder,
     };
     let (all, mut wrong) = run.sweeps(&sweeps)?;
     if args.patterns.is_empty() {
