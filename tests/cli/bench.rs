@@ -274,3 +274,17 @@ fn files_that_cannot_be_written_are_told_first() {
     let left = place.root.join("new/o.csv");
     assert!(!left.exists(), "nothing was measured");
 }
+
+/// As a bundle may be: of the three scenes that are measured without a pattern it has one.
+#[test]
+fn scenes_that_are_not_here_are_named() {
+    let place = Place::new("bench-partial");
+    place.write("corpus/abuffer/furball/scene.toml", &deep());
+    let command = ["bench", "abuffer", "--runs", "1", "--adapter", "llvmpipe"];
+    let ran = place.run(&command).expect(0);
+    for name in ["abuffer/sponza", "abuffer/dragon-full"] {
+        let words = format!("not measured: {name}: not in this corpus\n");
+        assert!(ran.stdout.contains(&words), "{}", ran.stdout);
+    }
+    assert!(ran.stdout.contains("\nabuffer/furball: "), "{}", ran.stdout);
+}

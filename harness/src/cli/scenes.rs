@@ -9,7 +9,7 @@ use crate::error::InputError;
 pub struct Scenes {
     /// Parts of scene names; all scenes without one
     #[arg(value_name = "PATTERN")]
-    pub patterns: Vec<String>,
+    patterns: Vec<String>,
     /// Patterns are whole names
     #[arg(long)]
     exact: bool,
@@ -22,5 +22,14 @@ impl Scenes {
     /// A pattern that selects nothing.
     pub fn select(&self, corpus: &[Entry]) -> Result<Vec<Entry>, InputError> {
         corpus::select(corpus, &self.patterns, self.exact)
+    }
+
+    /// The same, or `None` without a pattern, for a command that then has its own scenes.
+    ///
+    /// # Errors
+    /// A pattern that selects nothing.
+    pub fn if_any(&self, corpus: &[Entry]) -> Result<Option<Vec<Entry>>, InputError> {
+        let any = !self.patterns.is_empty();
+        any.then(|| self.select(corpus)).transpose()
     }
 }

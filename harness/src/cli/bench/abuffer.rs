@@ -10,10 +10,8 @@ use super::super::results::Results;
 use super::super::run_info::today;
 use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
-use crate::bench::{
-    Bench, Options, Progress, Row, SCENES, csv, markdown, run as measure, svg, table,
-};
-use crate::corpus;
+use crate::bench::{Bench, Options, Progress, Row, csv, markdown, run as measure, svg, table};
+use crate::corpus::{self, Entry};
 use crate::mesh::Intake;
 use crate::output::{complain, stdout};
 use crate::registry::FAMILIES;
@@ -75,16 +73,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     all_run(&foreign)?;
     let entries = corpus::list(&corpus::root())?;
-    let selected = match args.scenes.patterns.is_empty() {
-        true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
-        false => args.scenes.select(&entries)?,
-    };
+    let options = args.options(&entries)?;
     let own = [&args.json, &args.csv, &args.svg].into_iter().flatten();
     reports::can_write(own.chain([&args.folder().join(FILE)]))?;
     let mut adapters = args.on.usable()?.open;
     adapters.iter_mut().for_each(|a| a.use_foreign(&foreign));
-    let options = args.options();
-    let outcome = measure(&selected, &adapters, &options, &Progress::new());
+    let outcome = measure(&entries, &adapters, &options, &Progress::new());
     let outcome = outcome.map_err(anyhow::Error::msg)?;
     let mut out = stdout();
     for line in table::lines(&outcome.bench) {
@@ -129,8 +123,9 @@ fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
 }
 
 impl Args {
-    fn options(&self) -> Options {
-        Options {
+    fn options(&self, corpus: &[Entry]) -> anyhow::Result<Options> {
+        Ok(Options {
+            scenes: self.scenes.if_any(corpus)?,
             paths: self.on.paths(),
             runs: self.runs.get(),
             layers: match self.layers.is_empty() {
@@ -138,7 +133,7 @@ impl Args {
                 false => Some(self.layers.iter().map(|n| n.get()).collect()),
             },
             date: today(),
-        }
+        })
     }
 
     fn folder(&self) -> PathBuf {

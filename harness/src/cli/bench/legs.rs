@@ -38,10 +38,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let corpus = corpus::list(&corpus::root())?;
-    let scenes = match args.scenes.patterns.is_empty() {
-        true => None,
-        false => Some(args.scenes.select(&corpus)?),
-    };
+    let scenes = args.scenes.if_any(&corpus)?;
     let folder = args.out.clone().unwrap_or_else(reports::bench);
     // The names of the files end with the machine's.
     reports::can_write([&folder.join("legs")])?;
