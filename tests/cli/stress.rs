@@ -61,7 +61,7 @@ fn a_sweep_is_printed_and_written() {
 #[test]
 fn one_path_alone_is_asked_for() {
     let place = Place::new("stress-path");
-    let arguments = ["bench", "--stress", "layers", "--adapter", "llvmpipe"];
+    let arguments = ["bench", "--stress", "sliver", "--adapter", "llvmpipe"];
     let own = ["--path", "compute", "--json", "o.jsonl", "--out", "out"];
     place.run(&[&arguments[..], &own].concat()).expect(0);
     let mut rows = json(&place.root.join("o.jsonl"));
