@@ -61,10 +61,7 @@ fn legs(row: &Row) -> Vec<String> {
     // A path may carry options of its own, such as `compute --no-skip`.
     let path = |label: Option<_>| label.and_then(|p: &str| p.split(' ').next());
     let (path_a, path_b) = (path(a.2), path(b.2));
-    // One path can be asked for, or all.
-    let one_path = path_a.is_none() || path_b.is_none() || path_a == path_b;
     for ((leg, adapter, _), path) in [(a, path_a), (b, path_b)] {
-        let path = path.filter(|_| one_path);
         // The spec and closed forms always take part.
         let leg = ["gpu", "embree"].contains(&leg).then_some(leg);
         for (name, value) in [("--leg", leg), ("--adapter", adapter), ("--path", path)] {
@@ -99,9 +96,10 @@ mod tests {
                         --adapter 'llvmpipe (LLVM 15)' --path compute --seed 7 abuffer/fan";
         assert_eq!(again(&["--seed 7"]).row(&gpu, "abuffer/fan"), expected);
         let plain = |a, b| again(&[]).row(&row("a", "cover", a, b), "a");
-        let expected = "cargo triptych replay --exact --leg gpu --adapter x a";
+        let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute \
+                        --path fragment a";
         let both = plain("gpu@x/compute", "gpu@x/fragment");
-        assert_eq!(both, expected, "both paths, hence neither");
+        assert_eq!(both, expected, "both paths");
         let expected = "cargo triptych replay --exact --leg gpu --adapter x --path compute a";
         let unskipped = plain("gpu@x/compute", "gpu@x/compute --no-skip");
         assert_eq!(unskipped, expected);

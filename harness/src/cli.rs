@@ -9,11 +9,14 @@ mod doctor;
 mod kernel;
 mod list;
 mod mutants;
+mod paths;
 mod plan;
 mod replay;
 mod report;
+mod reports;
 mod results;
 mod run_info;
+mod scenes;
 
 use std::process::ExitCode;
 
@@ -57,6 +60,12 @@ enum Command {
     /// Pack what a machine without a toolchain needs
     Bundle(bundle::Args),
     /// What is installed, which adapters there are, and what is missing
+    #[command(
+        after_help = "It also runs what drivers were found to do wrong, corpus/findings, on every \
+                      adapter: each must still be seen where it was found.\n\n\
+                      Exit code 1: something is missing, an adapter cannot be used, or a finding is \
+                      not as it was found."
+    )]
     Doctor,
     /// The scenes of the corpus
     List(list::Args),

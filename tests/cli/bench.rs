@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use triptych_harness::bench::csv::COLUMNS;
 
-use super::{Place, deep, repository};
+use super::{Place, Ran, deep, repository};
 
 /// A file of results as rows of named values.
 fn rows(text: &str) -> Vec<BTreeMap<&'static str, &str>> {
@@ -241,4 +241,50 @@ fn nothing_measured_is_no_success() {
     );
     let why = "not measured: abuffer/opaque: nothing transparent is seen";
     assert!(ran.stdout.contains(why), "{}", ran.stdout);
+}
+
+/// Told in one line before anything is measured, and nothing of it is left behind.
+#[test]
+fn files_that_cannot_be_written_are_told_first() {
+    let place = Place::new("bench-files");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    place.write("blocked", "a file, no folder");
+    let (abuffer, legs) = (["bench", "abuffer", "deep"], ["bench", "legs", "deep"]);
+    let stress = ["bench", "--stress", "layers"];
+    let mutants = ["mutants", "background-left-out"];
+    for (command, option) in [
+        (&abuffer[..], "--json"),
+        (&abuffer, "--csv"),
+        (&abuffer, "--svg"),
+        (&abuffer, "--out"),
+        (&legs, "--out"),
+        (&stress, "--json"),
+        (&stress, "--csv"),
+        (&stress, "--out"),
+        (&mutants, "--json"),
+    ] {
+        let ran = place.run(&[command, &[option, "blocked/o"]].concat());
+        let Ran { stderr, stdout, .. } = ran.expect(2);
+        let told = stderr.starts_with("triptych: cannot write blocked/o");
+        assert!(told && stderr.lines().count() == 1, "{option}: {stderr}");
+        assert_eq!(stdout, "", "{command:?} {option}");
+    }
+    let both = ["--csv", "new/o.csv", "--svg", "blocked/o.svg"];
+    place.run(&[&abuffer[..], &both].concat()).expect(2);
+    let left = place.root.join("new/o.csv");
+    assert!(!left.exists(), "nothing was measured");
+}
+
+/// As a bundle may be: of the three scenes that are measured without a pattern it has one.
+#[test]
+fn scenes_that_are_not_here_are_named() {
+    let place = Place::new("bench-partial");
+    place.write("corpus/abuffer/furball/scene.toml", &deep());
+    let command = ["bench", "abuffer", "--runs", "1", "--adapter", "llvmpipe"];
+    let ran = place.run(&command).expect(0);
+    for name in ["abuffer/sponza", "abuffer/dragon-full"] {
+        let words = format!("not measured: {name}: not in this corpus\n");
+        assert!(ran.stdout.contains(&words), "{}", ran.stdout);
+    }
+    assert!(ran.stdout.contains("\nabuffer/furball: "), "{}", ran.stdout);
 }

@@ -59,6 +59,32 @@ fn the_report_shows_the_last_run() {
     assert!(ran.stdout.contains("mutants.json:1: "), "{}", ran.stdout);
 }
 
+#[test]
+fn one_path_alone_is_asked_for() {
+    let place = place("mutants-path");
+    let quads = "corpus/abuffer/quads/scene.toml";
+    let scene = fs::read_to_string(repository().join(quads)).expect("the mutant's scene");
+    place.write(quads, &scene);
+    let of = ["background-left-out", "--json", "m.json"];
+    let on = ["--adapter", "llvmpipe", "--path", "fragment"];
+    place
+        .run(&[&["mutants"], &of[..], &on[..]].concat())
+        .expect(0);
+    let lines = json(&place.root.join("m.json"));
+    let legs: Vec<_> = lines.iter().filter_map(|l| l["leg"].as_str()).collect();
+    assert!(
+        matches!(legs[..], [leg] if leg.ends_with("/fragment")),
+        "{legs:?}"
+    );
+    // A mutant of another path has not run, and is not said to have died.
+    let ran = place.run(&[&["mutants", MUTANT], &on[..]].concat());
+    let words = format!(
+        "triptych: {MUTANT}: no mutant of these paths has a name, scene or cause like it
+"
+    );
+    assert_eq!(ran.expect(2).stderr, words);
+}
+
 /// One that cannot be run keeps no other from it.
 #[test]
 fn a_mutant_without_its_scene_is_told() {

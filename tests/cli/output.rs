@@ -98,6 +98,8 @@ fn help_and_version_are_results() {
         assert!(!ran.stdout.is_empty(), "{arguments:?} says nothing");
         assert_eq!(ran.stderr, "", "{arguments:?}");
     }
+    let doctor = place.run(&["doctor", "--help"]).expect(0).stdout;
+    assert!(doctor.contains("corpus/findings"), "{doctor}");
 }
 
 /// What loading left out of a mesh is told in one line, by every command that loads it

@@ -59,6 +59,25 @@ fn a_sweep_is_printed_and_written() {
 }
 
 #[test]
+fn one_path_alone_is_asked_for() {
+    let place = Place::new("stress-path");
+    let arguments = ["bench", "--stress", "sliver", "--adapter", "llvmpipe"];
+    let own = ["--path", "compute", "--json", "o.jsonl", "--out", "out"];
+    place.run(&[&arguments[..], &own].concat()).expect(0);
+    let mut rows = json(&place.root.join("o.jsonl"));
+    rows.pop().expect("a summary");
+    let of_gpu = |row: &&serde_json::Value| row["b"].as_str().is_some_and(|b| b.contains("gpu@"));
+    let rows: Vec<_> = rows.iter().filter(of_gpu).collect();
+    assert!(!rows.is_empty(), "a leg takes part");
+    for row in rows {
+        for (field, part) in [("b", "/compute"), ("again", "--path compute")] {
+            let text = row[field].as_str().expect("text");
+            assert!(text.contains(part), "{row}");
+        }
+    }
+}
+
+#[test]
 fn what_is_no_sweep_is_told() {
     let place = Place::new("stress-none");
     let ran = place.run(&["bench", "--stress", "no-such"]).expect(2);

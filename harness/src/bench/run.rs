@@ -8,7 +8,7 @@ use triptych_gpu::wgsl::Sources;
 
 use super::counts::Work;
 use super::scene::{Station, scene};
-use super::{Bench, Ceilings, Machine, Progress};
+use super::{Bench, Ceilings, Machine, Progress, SCENES};
 use crate::corpus::Entry;
 use crate::replay::gpu::Adapter;
 use crate::scene::{LoadError, load_entry};
@@ -16,6 +16,8 @@ use crate::scene::{LoadError, load_entry};
 /// What is measured, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
+    /// The scenes; `None`: those of [`SCENES`].
+    pub scenes: Option<Vec<Entry>>,
     /// Raster paths.
     pub paths: Vec<Path>,
     /// Rounds that count, at least one.
@@ -58,9 +60,10 @@ impl Bound<'_> {
 /// Measures scenes on one core and on these adapters.
 ///
 /// # Errors
-/// One line for a scene that cannot be read; a mesh that is missing skips its scene.
+/// One line for a scene that cannot be read; a mesh that is missing skips its scene, as
+/// does a scene of [`SCENES`] that the corpus lacks.
 pub fn run(
-    entries: &[Entry],
+    corpus: &[Entry],
     adapters: &[Adapter],
     options: &Options,
     progress: &Progress,
@@ -96,7 +99,11 @@ pub fn run(
         }
         progress.step();
     }
-    for entry in entries {
+    let entries = match &options.scenes {
+        Some(scenes) => scenes.clone(),
+        None => named(corpus, &SCENES, &mut bench.remarks),
+    };
+    for entry in &entries {
         let loaded = match load_entry(entry, None) {
             Ok(loaded) => loaded,
             Err(missing @ LoadError::Missing { .. }) => {
@@ -119,6 +126,21 @@ pub fn run(
     bench.remarks.extend(bench.varying());
     progress.end();
     Ok(Outcome { bench, wrong })
+}
+
+/// The scenes of these names. Of those that a corpus lacks, as a bundle's may, it is said
+/// once in the remarks that they were not measured.
+pub(super) fn named(corpus: &[Entry], names: &[&str], remarks: &mut Vec<String>) -> Vec<Entry> {
+    let mut found = Vec::new();
+    for name in names {
+        let words = format!("not measured: {name}: not in this corpus");
+        match corpus.iter().find(|entry| entry.name == *name) {
+            Some(entry) => found.push(entry.clone()),
+            None if remarks.contains(&words) => {}
+            None => remarks.push(words),
+        }
+    }
+    found
 }
 
 /// An adapter's kernels: trusted and unchecked as they ship, checked if any is the

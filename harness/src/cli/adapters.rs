@@ -4,11 +4,41 @@ use std::fmt::Display;
 
 use anyhow::Context;
 
+use crate::again::option;
 use crate::output::complain;
 use crate::replay::gpu::Adapters;
 
+/// Adapters by parts of their names; all of them without one.
+#[derive(clap::Args)]
+pub(super) struct OnAdapters {
+    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Vec<String>,
+}
+
+impl OnAdapters {
+    /// The adapters that were asked for, of which some work; of the others it is said why
+    /// not.
+    ///
+    /// # Errors
+    /// None works.
+    pub(super) fn usable(&self) -> anyhow::Result<Adapters> {
+        let found = adapters(&self.adapter)?;
+        if found.open.is_empty() {
+            return could_not_run(found.broken);
+        }
+        found.broken.iter().for_each(complain);
+        Ok(found)
+    }
+
+    /// What a command must repeat to run on the same.
+    pub(super) fn again(&self) -> impl Iterator<Item = String> {
+        self.adapter.iter().map(|name| option("--adapter", name))
+    }
+}
+
 /// The adapters that were asked for, and work or do not; all of them, if none was.
-pub(super) fn adapters(wanted: &[String]) -> anyhow::Result<Adapters> {
+fn adapters(wanted: &[String]) -> anyhow::Result<Adapters> {
     let adapters = Adapters::open(wanted);
     let none = adapters.open.is_empty() && adapters.broken.is_empty();
     if none && wanted.is_empty() {
@@ -19,19 +49,6 @@ pub(super) fn adapters(wanted: &[String]) -> anyhow::Result<Adapters> {
         anyhow::bail!("no adapter is called {wanted}; see `triptych doctor`");
     }
     Ok(adapters)
-}
-
-/// The adapters that were asked for, of which some work; of the others it is said why not.
-///
-/// # Errors
-/// None works.
-pub(super) fn usable(wanted: &[String]) -> anyhow::Result<Adapters> {
-    let found = adapters(wanted)?;
-    if found.open.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
-    Ok(found)
 }
 
 /// Says of everything that a run could not do without why, a line each.

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use super::Verdict;
+use super::scenes::Scenes;
 use crate::bundle::bundle;
 use crate::output::{complain, stdout};
 use crate::{corpus, text};
@@ -19,17 +20,13 @@ pub struct Args {
     /// A folder that is new, or empty
     #[arg(value_name = "DIR")]
     to: PathBuf,
-    /// Parts of scene names; all scenes without one
-    #[arg(value_name = "PATTERN")]
-    patterns: Vec<String>,
-    /// Patterns are whole names
-    #[arg(long)]
-    exact: bool,
+    #[command(flatten)]
+    scenes: Scenes,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let entries = corpus::list(&corpus::root())?;
-    let scenes = corpus::select(&entries, &args.patterns, args.exact)?;
+    let scenes = args.scenes.select(&entries)?;
     let bundled = bundle(&args.to, &scenes)?;
     bundled.remarks.iter().for_each(complain);
     let bytes: u64 = bundled.files.iter().map(|(_, bytes)| bytes).sum();

@@ -9,22 +9,22 @@ use std::time::Instant;
 use anyhow::Context;
 use triptych_gpu::kernel::Foreign;
 
-use super::Verdict;
 use super::adapters::could_not_run;
 use super::bench::abuffer::last_bench;
 use super::kernel::{Kernels, all_judged, all_run, kernels};
 use super::mutants::last_mutants;
 use super::results::Results;
 use super::run_info::run_info;
+use super::{Verdict, reports};
 use crate::cache::Cache;
 use crate::corpus::Entry;
-use crate::output::{complain, stdout};
+use crate::output::stdout;
 use crate::replay::gpu::Vertices;
 use crate::replay::{Outcome, replay};
 use crate::report::{self, ReportInput, RunInfo};
 use crate::row::Summary;
 use crate::{corpus, embree, snapshot};
-pub use args::{Args, PathName};
+pub use args::Args;
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         }
     };
     let entries = corpus::list(&corpus::root())?;
-    let selected = corpus::select(&entries, &args.patterns, args.exact)?;
+    let selected = args.scenes.select(&entries)?;
     let mut options = args.options()?;
     all_run(&foreign, &options)?;
     anyhow::ensure!(
@@ -44,10 +44,6 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         "--kernel has no part in --vertex hardware; leave one of them out"
     );
     let found = args.adapters(&options, &foreign)?;
-    if found.open.is_empty() && !found.broken.is_empty() {
-        return could_not_run(found.broken);
-    }
-    found.broken.iter().for_each(complain);
     let adapters = found.open;
     options.broken = found.broken;
     let library = if options.embree {
@@ -55,8 +51,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     } else {
         None
     };
-    let out = corpus::root().with_file_name("reports").join("out");
-    options.cache = args.cache(&out)?;
+    options.cache = args.cache()?;
     let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
     let of_cache = options.cache.iter().flat_map(Cache::remarks);
     for remark in of_cache.chain(foreign.iter().map(instead)) {
@@ -83,7 +78,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let judged = all_judged(&foreign, results.rows());
     let seconds = summary.seconds;
     let run = run_info(&adapters, &options.broken, library.as_ref(), seconds);
-    let page = publish(&out, run, results, &summary)?;
+    let page = publish(run, results, &summary)?;
     if args.open {
         open(&page)?;
     }
@@ -110,20 +105,15 @@ fn leave_snapshot(entry: &Entry, outcome: &Outcome, results: &mut Results) -> an
 }
 
 /// Writes the report, and ends what the terminal shows.
-fn publish(
-    out: &Path,
-    run: RunInfo,
-    mut results: Results,
-    summary: &Summary,
-) -> anyhow::Result<PathBuf> {
-    let mutants = last_mutants(out, &mut results)?;
-    let bench = last_bench(out, &mut results)?;
+fn publish(run: RunInfo, mut results: Results, summary: &Summary) -> anyhow::Result<PathBuf> {
+    let mutants = last_mutants(&mut results)?;
+    let bench = last_bench(&mut results)?;
     let Results {
         mut reporter,
         scenes,
         ..
     } = results;
-    let page = out.join("index.html");
+    let page = reports::page();
     let input = ReportInput {
         run,
         scenes,

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 
-use super::Verdict;
 use super::replay::verdict;
 use super::run_info::run_info;
+use super::{Verdict, reports};
 use crate::report::{self, ReportInput};
-use crate::{corpus, json, output};
+use crate::{json, output};
 
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  triptych report shard1.json shard2.json --output report.html")]
@@ -24,12 +24,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let merged = json::read(&args.files)?;
-    let default = || {
-        corpus::root()
-            .with_file_name("reports")
-            .join("out/index.html")
-    };
-    let page = args.output.clone().unwrap_or_else(default);
+    let page = args.output.clone().unwrap_or_else(reports::page);
     let run = run_info(&[], &[], None, merged.summary.seconds);
     report::write(&page, &ReportInput::from_rows(run, &merged))
         .with_context(|| format!("cannot write {}", page.display()))?;

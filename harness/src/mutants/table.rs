@@ -68,6 +68,16 @@ enum PathName {
     Native,
 }
 
+impl PathName {
+    fn path(self) -> Path {
+        match self {
+            Self::Fragment => Path::Fragment,
+            Self::Compute => Path::Compute,
+            Self::Native => Path::Native,
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum FaultName {
@@ -98,12 +108,20 @@ pub fn mutants() -> Vec<Mutant> {
     TABLES.into_iter().flat_map(of).collect()
 }
 
-/// The mutants whose name, scene or cause contains one of the patterns; all of them
-/// without one.
+/// The mutants that one of these paths has, on no other, whose name, scene or cause
+/// contains one of the patterns; without a pattern all of them.
 ///
 /// # Errors
 /// A pattern that selects nothing.
-pub fn select(all: Vec<Mutant>, patterns: &[String]) -> Result<Vec<Mutant>, String> {
+pub fn select(
+    mut all: Vec<Mutant>,
+    patterns: &[String],
+    paths: &[Path],
+) -> Result<Vec<Mutant>, String> {
+    all.retain_mut(|mutant| {
+        mutant.paths.retain(|path| paths.contains(&path.path()));
+        !mutant.paths.is_empty()
+    });
     let matches = |m: &Mutant, pattern: &String| {
         let cause = m.cause.map(Cause::name).unwrap_or_default();
         [&m.name, &m.scene, &cause]
@@ -114,8 +132,12 @@ pub fn select(all: Vec<Mutant>, patterns: &[String]) -> Result<Vec<Mutant>, Stri
         .iter()
         .find(|pattern| !all.iter().any(|m| matches(m, pattern)))
     {
+        let of = match paths.len() < Path::ALL.len() {
+            true => " of these paths",
+            false => "",
+        };
         return Err(format!(
-            "{pattern}: no mutant has a name, scene or cause like it"
+            "{pattern}: no mutant{of} has a name, scene or cause like it"
         ));
     }
     let wanted = |m: &Mutant| patterns.is_empty() || patterns.iter().any(|p| matches(m, p));
@@ -139,11 +161,7 @@ pub(super) fn digest() -> String {
 impl Mutant {
     /// The raster paths that have the defect.
     pub fn paths(&self) -> impl Iterator<Item = Path> {
-        self.paths.iter().map(|path| match path {
-            PathName::Fragment => Path::Fragment,
-            PathName::Compute => Path::Compute,
-            PathName::Native => Path::Native,
-        })
+        self.paths.iter().map(|path| path.path())
     }
 
     /// The defect of the host's part.
@@ -242,7 +260,8 @@ mod tests {
 
     #[test]
     fn patterns_select_by_name_scene_and_cause() {
-        let count = |pattern: &str| select(mutants(), &[pattern.to_owned()]).map(|m| m.len());
+        let of = |pattern: &str| select(mutants(), &[pattern.to_owned()], &Path::ALL);
+        let count = |pattern: &str| of(pattern).map(|m| m.len());
         assert_eq!(count("head-exchanged-in-two-steps"), Ok(1), "by name");
         assert!(count("abuffer/contention").is_ok_and(|n| n > 1), "by scene");
         assert!(count("tie-order").is_ok_and(|n| n > 1), "by cause");

@@ -6,10 +6,11 @@ use triptych_gpu::ceiling::Ceiling;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::timer::Clock;
 
+use super::super::run::named;
 use super::super::{Machine, Progress};
 use super::stages::Station;
 use super::{HITS, LAYERS, Legs, STAGES, embree, stages};
-use crate::corpus::{self, Entry};
+use crate::corpus::Entry;
 use crate::mesh::Intake;
 use crate::replay::gpu::Adapter;
 use crate::scene::{LoadError, Loaded, load_entry, load_text};
@@ -28,7 +29,8 @@ pub struct Options {
 /// Measures legs against each other on these adapters.
 ///
 /// # Errors
-/// One line for a scene that cannot be read; a mesh that is missing skips its scene.
+/// One line for a scene that cannot be read; a mesh that is missing skips its scene, as
+/// does one of our own choice that the corpus lacks.
 pub fn run(
     corpus: &[Entry],
     adapters: &[Adapter],
@@ -44,13 +46,10 @@ pub fn run(
     };
     let before = load();
     let stations = stations(adapters, &mut legs.remarks);
-    let named = |names: &[&str]| {
-        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-        corpus::select(corpus, &names, true).map_err(|error| error.to_string())
-    };
+    let mut default = |names: &[&str]| named(corpus, names, &mut legs.remarks);
     let (of_stages, of_hits) = match &options.scenes {
         Some(scenes) => (scenes.clone(), scenes.clone()),
-        None => (named(&STAGES)?, named(&HITS)?),
+        None => (default(&STAGES), default(&HITS)),
     };
     for entry in &of_stages {
         if let Some(loaded) = legs.load(entry)? {

@@ -2,29 +2,24 @@
 
 use std::io::Write;
 use std::num::NonZeroU32;
-use std::path::{Path as FilePath, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::Context;
-
-use super::super::Verdict;
-use super::super::adapters::usable;
 use super::super::kernel::{Kernels, kernels};
-use super::super::replay::PathName;
+use super::super::paths::OnPaths;
 use super::super::results::Results;
 use super::super::run_info::today;
-use crate::bench::{
-    Bench, Options, Progress, Row, SCENES, csv, markdown, run as measure, svg, table,
-};
-use crate::corpus;
+use super::super::scenes::Scenes;
+use super::super::{Verdict, reports};
+use crate::bench::{Bench, Options, Progress, Row, csv, markdown, run as measure, svg, table};
+use crate::corpus::{self, Entry};
 use crate::mesh::Intake;
 use crate::output::{complain, stdout};
 use crate::registry::FAMILIES;
 use crate::text::clean;
 use triptych_gpu::kernel::Foreign;
-use triptych_gpu::raster::Path;
 
 /// Among the results, what the report reads.
-pub const FILE: &str = "abuffer.json";
+const FILE: &str = "abuffer.json";
 
 /// The family whose stages are measured.
 const FAMILY: &str = "abuffer";
@@ -39,19 +34,12 @@ const FILE_MAX: u64 = 1 << 26;
     triptych bench abuffer --adapter nvidia --path compute --out results\n\n\
     Every picture is compared with the spec's before and after it is timed. Exit code 1: one \
     is outside the spec's bound. 2: nothing could be measured.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; three real meshes without one")))]
 pub struct Args {
-    /// Parts of scene names, scene files, or meshes; three real meshes without one
-    #[arg(value_name = "PATTERN")]
-    patterns: Vec<String>,
-    /// Patterns are whole names
-    #[arg(long)]
-    exact: bool,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
-    /// Only this raster path (repeatable)
-    #[arg(long)]
-    path: Vec<PathName>,
+    #[command(flatten)]
+    scenes: Scenes,
+    #[command(flatten)]
+    on: OnPaths,
     /// Rounds that count, after two, and a second of each adapter, to warm up
     #[arg(long, value_name = "N", default_value = "15")]
     runs: NonZeroU32,
@@ -85,14 +73,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     all_run(&foreign)?;
     let entries = corpus::list(&corpus::root())?;
-    let selected = match args.patterns.is_empty() {
-        true => corpus::select(&entries, &SCENES.map(str::to_owned), true)?,
-        false => corpus::select(&entries, &args.patterns, args.exact)?,
-    };
-    let mut adapters = usable(&args.adapter)?.open;
+    let options = args.options(&entries)?;
+    let own = [&args.json, &args.csv, &args.svg].into_iter().flatten();
+    reports::can_write(own.chain([&args.folder().join(FILE)]))?;
+    let mut adapters = args.on.usable()?.open;
     adapters.iter_mut().for_each(|a| a.use_foreign(&foreign));
-    let options = args.options();
-    let outcome = measure(&selected, &adapters, &options, &Progress::new());
+    let outcome = measure(&entries, &adapters, &options, &Progress::new());
     let outcome = outcome.map_err(anyhow::Error::msg)?;
     let mut out = stdout();
     for line in table::lines(&outcome.bench) {
@@ -137,25 +123,26 @@ fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
 }
 
 impl Args {
-    fn options(&self) -> Options {
-        let path = |path: &PathName| path.path();
-        Options {
-            paths: match self.path.is_empty() {
-                true => Path::ALL.to_vec(),
-                false => self.path.iter().map(path).collect(),
-            },
+    fn options(&self, corpus: &[Entry]) -> anyhow::Result<Options> {
+        Ok(Options {
+            scenes: self.scenes.if_any(corpus)?,
+            paths: self.on.paths(),
             runs: self.runs.get(),
             layers: match self.layers.is_empty() {
                 true => None,
                 false => Some(self.layers.iter().map(|n| n.get()).collect()),
             },
             date: today(),
-        }
+        })
+    }
+
+    fn folder(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(reports::bench)
     }
 
     /// Writes what was measured, in all forms. Results that are wrong are not among them.
     fn write(&self, bench: &Bench) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(|| folder(&reports()));
+        let folder = self.folder();
         let json = serde_json::to_string_pretty(bench)? + "\n";
         let (csv, svg) = (csv::csv(bench), svg::file(bench));
         let stem = bench.stem();
@@ -172,35 +159,16 @@ impl Args {
             .into_iter()
             .filter_map(|(to, text)| Some((to.clone()?, text)));
         for (file, text) in files.into_iter().chain(extra) {
-            write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
+            reports::write(&file, text)?;
         }
         writeln!(stdout(), "Results: {}", folder.display())?;
         Ok(())
     }
 }
 
-pub(super) fn write(file: &FilePath, text: &str) -> std::io::Result<()> {
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder)?;
-    }
-    std::fs::write(file, text)
-}
-
-pub(super) fn reports() -> PathBuf {
-    corpus::root().with_file_name("reports").join("out")
-}
-
-/// Where the results of a run go, in the folder of the report.
-pub(super) fn folder(out: &FilePath) -> PathBuf {
-    out.join("bench")
-}
-
 /// The last measurement, for the report; a file that cannot be read is worth a remark.
-pub(in crate::cli) fn last_bench(
-    out: &FilePath,
-    results: &mut Results,
-) -> anyhow::Result<Option<Bench>> {
-    let file = folder(out).join(FILE);
+pub(in crate::cli) fn last_bench(results: &mut Results) -> anyhow::Result<Option<Bench>> {
+    let file = reports::bench().join(FILE);
     if !file.is_file() {
         return Ok(None);
     }

@@ -2,14 +2,12 @@
 
 use std::io::Write;
 use std::num::NonZeroU32;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Context;
-
-use super::super::Verdict;
-use super::super::adapters::usable;
+use super::super::adapters::OnAdapters;
 use super::super::run_info::today;
-use super::abuffer::{folder, reports, write};
+use super::super::scenes::Scenes;
+use super::super::{Verdict, reports};
 use crate::bench::Progress;
 use crate::bench::legs::{Legs, Options, csv, lines, page, run as measure};
 use crate::corpus;
@@ -24,17 +22,12 @@ use crate::text::clean;
     Demands: the spec on one core takes no longer for a fragment than llvmpipe's hardware path, \
     and the Embree leg no more than 1.5 times as long as bare calls. Exit code 0 whether or not \
     they are met: a benchmark judges no machine. 2: nothing could be measured.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; without one three real meshes and 64 layers over a whole target")))]
 pub struct Args {
-    /// Parts of scene names, scene files, or meshes; without one three real meshes and 64
-    /// layers over a whole target
-    #[arg(value_name = "PATTERN")]
-    patterns: Vec<String>,
-    /// Patterns are whole names
-    #[arg(long)]
-    exact: bool,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
+    #[command(flatten)]
+    scenes: Scenes,
+    #[command(flatten)]
+    on: OnAdapters,
     /// Rounds that count, after two to warm up
     #[arg(long, value_name = "N", default_value = "15")]
     runs: NonZeroU32,
@@ -45,11 +38,11 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let corpus = corpus::list(&corpus::root())?;
-    let scenes = match args.patterns.is_empty() {
-        true => None,
-        false => Some(corpus::select(&corpus, &args.patterns, args.exact)?),
-    };
-    let adapters = usable(&args.adapter)?.open;
+    let scenes = args.scenes.if_any(&corpus)?;
+    let folder = args.out.clone().unwrap_or_else(reports::bench);
+    // The names of the files end with the machine's.
+    reports::can_write([&folder.join("legs")])?;
+    let adapters = args.on.usable()?.open;
     let options = Options {
         scenes,
         runs: args.runs.get(),
@@ -68,19 +61,16 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         !legs.rows.is_empty(),
         "nothing was measured; see what was not, and why"
     );
-    args.write(&legs)?;
+    write(&folder, &legs)?;
     Ok(Verdict::Agree)
 }
 
-impl Args {
-    fn write(&self, legs: &Legs) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(|| folder(&reports()));
-        let stem = legs.stem();
-        for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
-            let file = folder.join(format!("{stem}.{end}"));
-            write(&file, &text).with_context(|| format!("cannot write {}", file.display()))?;
-        }
-        writeln!(stdout(), "Results: {}", folder.display())?;
-        Ok(())
+fn write(folder: &Path, legs: &Legs) -> anyhow::Result<()> {
+    let stem = legs.stem();
+    for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
+        let file = folder.join(format!("{stem}.{end}"));
+        reports::write(&file, &text)?;
     }
+    writeln!(stdout(), "Results: {}", folder.display())?;
+    Ok(())
 }

@@ -6,17 +6,17 @@ use std::time::Instant;
 
 use anyhow::Context;
 
-use super::super::Verdict;
-use super::super::adapters::usable;
+use super::super::paths::OnPaths;
 use super::super::run_info::run_info;
-use crate::again::{Again, option};
+use super::super::{Verdict, reports};
+use crate::again::Again;
 use crate::bench::Machine;
 use crate::output::{complain, stdout};
 use crate::replay::Options;
 use crate::replay::gpu::Adapter;
 use crate::row::Row;
 use crate::stress::{self, Measured, Sweep, Table};
-use crate::{corpus, embree, json};
+use crate::{embree, json};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -30,9 +30,8 @@ pub struct Args {
     /// without one
     #[arg(value_name = "PATTERN")]
     patterns: Vec<String>,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
+    #[command(flatten)]
+    on: OnPaths,
     /// Write one JSON object per comparison, and a summary
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -47,20 +46,22 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let start = Instant::now();
     let sweeps = stress::select(&args.patterns).map_err(anyhow::Error::msg)?;
+    let folder = args.out.clone().unwrap_or_else(reports::bench);
+    // The names of the files end with the machine's.
+    let own = [&args.json, &args.csv].into_iter().flatten();
+    reports::can_write(own.chain([&folder.join("stress")]))?;
     let library = embree::library()?;
-    let found = usable(&args.adapter)?;
+    let found = args.on.usable()?;
     let options = Options {
         broken: found.broken,
+        paths: args.on.paths(),
         ..Options::default()
     };
     let run = Run {
         args,
         adapters: found.open,
         options,
-        folder: args.out.clone().unwrap_or_else(|| {
-            let reports = corpus::root().with_file_name("reports");
-            reports.join("out").join("bench")
-        }),
+        folder,
     };
     let (all, mut wrong) = run.sweeps(&sweeps)?;
     if args.patterns.is_empty() {
@@ -139,9 +140,8 @@ impl Run<'_> {
             return Ok(());
         };
         let context = || format!("cannot write {}", file.display());
-        let legs = self.args.adapter.iter().map(|a| option("--adapter", a));
         let again = Again {
-            legs: legs.collect(),
+            legs: self.args.on.again(),
             options: Vec::new(),
         };
         let mut writer = json::Writer::create(file).with_context(context)?;

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use anyhow::Context;
 use clap::ValueEnum;
 use triptych_gpu::kernel::Foreign;
-use triptych_gpu::raster::Path;
 
-use super::super::adapters::adapters;
+use super::super::paths::OnPaths;
+use super::super::reports;
+use super::super::scenes::Scenes;
 use crate::again::{Again, option};
 use crate::cache::Cache;
 use crate::dump::Dump;
-use crate::replay::gpu::{Adapter, Adapters, From, Vertices};
+use crate::replay::gpu::{Adapters, From, Vertices};
 use crate::replay::{Extent, Options};
 
 #[derive(clap::Args)]
@@ -24,22 +25,15 @@ use crate::replay::{Extent, Options};
     triptych replay --kernel build=mine.wgsl abuffer/\n\n\
     A reader that leaves early, as in `triptych replay | head`, does not end the run: report, \
     JSON lines and exit code are those of the whole run.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; the whole corpus without one")))]
 pub struct Args {
-    /// Parts of scene names, scene files, or meshes; the whole corpus without one
-    #[arg(value_name = "PATTERN")]
-    pub(super) patterns: Vec<String>,
-    /// Patterns are whole names
-    #[arg(long)]
-    pub(super) exact: bool,
+    #[command(flatten)]
+    pub(super) scenes: Scenes,
     /// Only these legs beside the spec (repeatable)
     #[arg(long, value_name = "LEG")]
     leg: Vec<Leg>,
-    /// Only adapters whose name contains this (repeatable); "gl" adds OpenGL's
-    #[arg(long, value_name = "SUBSTRING")]
-    adapter: Vec<String>,
-    /// Only this raster path
-    #[arg(long)]
-    path: Option<PathName>,
+    #[command(flatten)]
+    on: OnPaths,
     /// Whose vertices the GPU's later stages get
     #[arg(long, value_name = "WHOSE", default_value = "spec")]
     vertex: Vertices,
@@ -82,26 +76,6 @@ enum Leg {
     Embree,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub enum PathName {
-    /// The hardware's rasteriser
-    Fragment,
-    /// Integer arithmetic in baseline WGSL
-    Compute,
-    /// The same with 64-bit integers, where an adapter has them
-    Native,
-}
-
-impl PathName {
-    pub fn path(self) -> Path {
-        match self {
-            Self::Fragment => Path::Fragment,
-            Self::Compute => Path::Compute,
-            Self::Native => Path::Native,
-        }
-    }
-}
-
 impl Args {
     pub(super) fn adapters(
         &self,
@@ -111,13 +85,7 @@ impl Args {
         if !options.gpu {
             return Ok(Adapters::default());
         }
-        let mut adapters = adapters(&self.adapter)?;
-        let runs = |a: &Adapter, path: &Path| *path != Path::Native || a.native.is_some();
-        let runs_any = |a: &Adapter| options.paths.iter().any(|path| runs(a, path));
-        anyhow::ensure!(
-            adapters.open.is_empty() || adapters.open.iter().any(runs_any),
-            "no adapter that was asked for has the 64-bit integers that --path native needs"
-        );
+        let mut adapters = self.on.usable()?;
         for adapter in &mut adapters.open {
             adapter.use_foreign(foreign);
         }
@@ -125,19 +93,18 @@ impl Args {
     }
 
     /// The cache, unless all is to run.
-    pub(super) fn cache(&self, out: &std::path::Path) -> anyhow::Result<Option<Cache>> {
+    pub(super) fn cache(&self) -> anyhow::Result<Option<Cache>> {
         if self.no_cache || self.snapshot || self.dump.is_some() || !self.kernel.is_empty() {
             return Ok(None);
         }
-        let cache = Cache::open(&out.join("cache")).context("cannot open the cache")?;
+        let cache = Cache::open(&reports::out().join("cache")).context("cannot open the cache")?;
         Ok(Some(cache))
     }
 
     /// What a command must repeat to see the same result.
     pub(super) fn again(&self) -> Again {
         let mut legs: Vec<String> = self.leg.iter().map(|leg| chosen("--leg", *leg)).collect();
-        legs.extend(self.adapter.iter().map(|name| option("--adapter", name)));
-        legs.extend(self.path.map(|path| chosen("--path", path)));
+        legs.extend(self.on.again());
         let mut options = Vec::new();
         options.extend(self.seed.map(|seed| option("--seed", &seed.to_string())));
         if self.vertex != Vertices::default() {
@@ -164,10 +131,7 @@ impl Args {
                 true => Extent::All,
                 false => Extent::Small,
             },
-            paths: match self.path {
-                None => Options::default().paths,
-                Some(path) => vec![path.path()],
-            },
+            paths: self.on.paths(),
             from,
             vertex: self.vertex,
             skip: !self.no_skip,
