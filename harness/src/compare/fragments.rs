@@ -156,3 +156,6 @@ impl Rule<'_> {
 pub fn at(pixel: u32, width: u32) -> String {
     format!("pixel ({}, {})", pixel % width, pixel / width)
 }
+
+#[cfg(test)]
+mod tests;

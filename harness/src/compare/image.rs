@@ -42,3 +42,6 @@ pub fn compare(spec: &[[Bounded; 3]], other: &[[f32; 3]], width: u32) -> Judgeme
     judgement.error_over_bound = Some(worst);
     judgement
 }
+
+#[cfg(test)]
+mod tests;

@@ -59,3 +59,6 @@ fn surface(key: u32, prim: u32) -> String {
         prim => format!("triangle row {prim} at key {key}"),
     }
 }
+
+#[cfg(test)]
+mod tests;

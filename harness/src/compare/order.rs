@@ -112,3 +112,6 @@ pub fn words(list: &[Fragment]) -> String {
     }
     format!("[{}]", shown.join(" "))
 }
+
+#[cfg(test)]
+mod tests;

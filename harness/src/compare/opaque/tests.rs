@@ -1,0 +1,104 @@
+use triptych_spec::abuffer::{NOTHING, Opaque};
+use triptych_spec::scene::Size;
+use triptych_spec::vertex::Primitives;
+
+use super::compare;
+use crate::cause::Cause;
+use crate::compare::Judgement;
+
+/// Two pixels side by side. Rows 0 and 1 cover both at key 7, row 2 at key 9; row 3 lies
+/// outside, row 4 has no area.
+fn primitives() -> Primitives {
+    let all = |key| [[-2048, -2048, key], [4096, -2048, key], [-2048, 4096, key]];
+    let outside = [[4096, 0, 1], [8192, 0, 1], [4096, 4096, 1]];
+    let corners = [all(7), all(7), all(9), outside, [[0, 0, 1]; 3]];
+    Primitives {
+        size: Size {
+            width: 2,
+            height: 1,
+        },
+        bits: 8,
+        snapped: corners.concat(),
+        prims: (0..5)
+            .map(|row| [3 * row, 3 * row + 1, 3 * row + 2])
+            .collect(),
+        source: (0..5).collect(),
+    }
+}
+
+/// The first pixel shows row 0; the second shows what is given, and must show row 0.
+fn judge(key: u32, prim: u32) -> Judgement {
+    let spec = Opaque {
+        key: vec![7; 2],
+        prim: vec![0; 2],
+    };
+    let other = Opaque {
+        key: vec![7, key],
+        prim: vec![0, prim],
+    };
+    compare(&spec, &other, &primitives())
+}
+
+fn cause(key: u32, prim: u32) -> Option<Cause> {
+    let judgement = judge(key, prim);
+    assert_eq!((judgement.compared, judgement.differ()), (2, 1));
+    assert_eq!(judgement.marks.len(), 1);
+    assert_eq!(judgement.marks[0].0, 1, "the second pixel");
+    judgement.causes.into_keys().next()
+}
+
+#[test]
+fn every_difference_has_its_cause() {
+    assert_eq!(judge(7, 0).differ(), 0, "the same");
+    assert_eq!(
+        cause(7, 1),
+        Some(Cause::TieOrder),
+        "another of the same key"
+    );
+    assert_eq!(
+        cause(9, 2),
+        Some(Cause::Coverage),
+        "one behind shows through"
+    );
+    assert_eq!(
+        cause(8, 0),
+        Some(Cause::DepthKey),
+        "the same at another key"
+    );
+    assert_eq!(
+        cause(7, 2),
+        Some(Cause::DepthKey),
+        "one behind at a key that it has not"
+    );
+    assert_eq!(cause(1, 3), Some(Cause::Coverage), "one that is not there");
+    assert_eq!(cause(1, 4), Some(Cause::Coverage), "one without area");
+    assert_eq!(cause(7, 5), Some(Cause::Coverage), "a row that nobody has");
+    assert_eq!(cause(NOTHING, NOTHING), Some(Cause::Coverage), "nothing");
+}
+
+#[test]
+fn differences_are_told_in_words() {
+    let first = |judgement: Judgement| judgement.described[0].clone();
+    let words = "tie-order: pixel (1, 0) shows triangle row 1 at key 7, \
+                 must show triangle row 0 at key 7";
+    assert_eq!(first(judge(7, 1)), words);
+    let words = "coverage: pixel (1, 0) shows nothing, must show triangle row 0 at key 7";
+    assert_eq!(first(judge(NOTHING, NOTHING)), words);
+}
+
+#[test]
+fn surfaces_of_another_size_are_not_compared() {
+    let spec = Opaque {
+        key: vec![7; 2],
+        prim: vec![0; 2],
+    };
+    for (keys, prims) in [(1, 2), (2, 1)] {
+        let other = Opaque {
+            key: vec![7; keys],
+            prim: vec![0; prims],
+        };
+        let judgement = compare(&spec, &other, &primitives());
+        assert_eq!(judgement.causes.get(&Cause::ReferenceMissing), Some(&1));
+        assert_eq!(judgement.compared, 0);
+    }
+}
