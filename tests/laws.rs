@@ -5,7 +5,8 @@
 //! | `bound` | whatever rounding, fusing, flushing and order WGSL allows stays inside the bounds |
 //! | `bound::closed_forms` | bounds worked out by hand |
 //! | `matrix` | quarter turns; products |
-//! | `vertex` | neighbours share clip points; powers of two; permutation; translation; ranges; what is visible stays |
+//! | `vertex` | powers of two; permutation; translation; ranges |
+//! | `vertex::clip` | neighbours share clip points; what is visible stays; nothing is left of what has no place |
 //! | `raster` | brute force; permutation; translation; refinement; winding |
 //! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
 //! | `abuffer` | lists, capacity, conservation, permutation, order of insertion |
