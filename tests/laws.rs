@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `bound` | whatever rounding, fusing, flushing and order WGSL allows stays inside the bounds |
 //! | `bound::closed_forms` | bounds worked out by hand |
+//! | `camera` | where points are seen; what makes no camera |
 //! | `matrix` | quarter turns; products |
 //! | `vertex` | powers of two; permutation; translation; ranges |
 //! | `vertex::clip` | neighbours share clip points; what is visible stays; nothing is left of what has no place |
@@ -21,6 +22,8 @@
 mod abuffer;
 #[path = "laws/bound.rs"]
 mod bound;
+#[path = "laws/camera.rs"]
+mod camera;
 #[path = "laws/gpu.rs"]
 mod gpu;
 #[path = "laws/grid.rs"]
