@@ -49,6 +49,10 @@ fn a_perspective_divides_by_the_distance() {
     near(seen(&camera, [0.0, 0.0, 10.0]), [0.0, 0.0, 1.0, 10.0]);
     near(seen(&camera, [8.0, 4.0, 4.0]), [1.0, 1.0, 0.625, 4.0]);
     near(seen(&camera, [-2.0, -1.0, 4.0]), [-0.25, -0.25, 0.625, 4.0]);
+    // A narrower one, that spans half the distance to either side.
+    let fov = 2.0 * 0.5_f64.atan().to_degrees();
+    let narrow = self::camera(Projection::Perspective { fov });
+    near(seen(&narrow, [4.0, 2.0, 4.0]), [1.0, 1.0, 0.625, 4.0]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 use triptych_spec::abuffer::{EOL, Lists, Node, Sorted};
 use triptych_spec::raster::Fragment;
 
-use super::{Expected, compare};
+use super::{Expected, compare, compare_overflowed};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 
@@ -20,37 +20,48 @@ fn node(prim: usize, next: u32) -> Node {
     }
 }
 
-/// Judges a band of two pixels, both covered by both triangles, in one row of six.
-fn judge(heads: [u32; 2], nodes: Vec<Node>) -> Judgement {
+/// What a band of two pixels must hold, both covered by both triangles, in one row of six.
+/// The first pixel of the row, outside of the band, is covered too.
+fn sorted() -> Sorted {
     let fragment = |pixel, prim: u32| Fragment {
         pixel,
         prim,
         key: KEYS[prim as usize],
         mask: 1,
     };
-    let pixels = [FIRST, FIRST + 1];
-    let sorted = Sorted {
-        offsets: vec![0, 0, 0, 0, 0, 2, 4],
+    let pixels = [0, FIRST, FIRST + 1];
+    Sorted {
+        offsets: vec![0, 2, 2, 2, 2, 4, 6],
         fragments: pixels
             .iter()
             .flat_map(|p| [fragment(*p, 0), fragment(*p, 1)])
             .collect(),
-    };
-    let expected = Expected {
-        sorted: &sorted,
+    }
+}
+
+fn expected(sorted: &Sorted) -> Expected<'_> {
+    Expected {
+        sorted,
         first_pixel: FIRST,
         faces: &[[0.0; 4]; 2],
         width: 6,
-    };
+    }
+}
+
+/// Lists of the band, of which every node was counted.
+fn lists(heads: [u32; 2], nodes: Vec<Node>) -> Lists {
     let stored = u32::try_from(nodes.len()).expect("few");
-    let lists = Lists {
+    Lists {
         heads: heads.to_vec(),
         colours: vec![[0.0; 4]; nodes.len()],
         nodes,
         attempts: stored,
         capacity: 8,
-    };
-    compare(&expected, &lists)
+    }
+}
+
+fn judge(heads: [u32; 2], nodes: Vec<Node>) -> Judgement {
+    compare(&expected(&sorted()), &lists(heads, nodes))
 }
 
 #[test]
@@ -109,4 +120,77 @@ fn circles_out_of_reach_are_of_no_known_pixel() {
         [(Cause::LostNode, 3)].into(),
         "{judgement:#?}"
     );
+}
+
+fn sound() -> Vec<Node> {
+    vec![node(0, EOL), node(0, EOL), node(1, 0), node(1, 1)]
+}
+
+#[test]
+fn a_wrong_counter_is_overflow() {
+    for attempts in [3, 5] {
+        let mut wrong = lists([2, 3], sound());
+        wrong.attempts = attempts;
+        let judgement = compare(&expected(&sorted()), &wrong);
+        assert_eq!(
+            judgement.causes,
+            [(Cause::Overflow, 1)].into(),
+            "{attempts}"
+        );
+        let words = format!("overflow: the counter is {attempts}, must be 4");
+        assert_eq!(judgement.described, [words]);
+    }
+}
+
+/// One address was handed out twice: a list runs into the other, or into itself.
+#[test]
+fn addresses_that_are_shared_explain_every_fault() {
+    let mut shared = lists([1, 2], vec![node(0, EOL), node(1, 0), node(1, 1)]);
+    shared.attempts = 1;
+    let judgement = compare(&expected(&sorted()), &shared);
+    assert_eq!(
+        judgement.causes,
+        [(Cause::Overflow, 3)].into(),
+        "{judgement:#?}"
+    );
+    let words = "overflow: the counter is 1, must be 4: addresses are shared";
+    assert_eq!(judgement.described[0], words);
+}
+
+#[test]
+fn empty_lists_are_what_is_compared_without_fragments() {
+    let none = Sorted {
+        offsets: vec![0, 2, 2, 2, 2, 2, 2],
+        fragments: sorted().fragments[..2].to_vec(),
+    };
+    let judgement = compare(&expected(&none), &lists([EOL; 2], Vec::new()));
+    assert_eq!((judgement.compared, judgement.differ()), (2, 0));
+    assert_eq!(judgement.unit, "empty lists");
+}
+
+/// Lists with room for three of four: what is stored must be of the spec's, and the
+/// counter that of the attempt with enough room.
+#[test]
+fn what_overflowed_is_a_part_and_was_counted() {
+    let mut stored = lists([2, 1], vec![node(0, EOL), node(0, EOL), node(1, 0)]);
+    (stored.attempts, stored.capacity) = (4, 3);
+    let judged = |lists: &Lists| compare_overflowed(&expected(&sorted()), lists, 4);
+    let sound = judged(&stored);
+    assert_eq!(
+        (sound.compared, sound.differ()),
+        (4, 0),
+        "three nodes and a counter"
+    );
+    assert_eq!(sound.unit, "nodes");
+    let miscounted = judged(&Lists {
+        attempts: 5,
+        ..stored.clone()
+    });
+    assert_eq!(miscounted.causes, [(Cause::Overflow, 1)].into());
+    let mut wrong = stored.clone();
+    wrong.nodes[2].key = 6;
+    assert_eq!(judged(&wrong).causes, [(Cause::DepthKey, 1)].into());
+    let mut shared = stored;
+    (shared.attempts, shared.heads[1]) = (3, 0);
+    assert_eq!(judged(&shared).causes, [(Cause::Overflow, 1)].into());
 }
