@@ -55,6 +55,32 @@ fn a_perspective_divides_by_the_distance() {
     near(seen(&narrow, [4.0, 2.0, 4.0]), [1.0, 1.0, 0.625, 4.0]);
 }
 
+/// Right (1, -2, 2) / 3, up (2, 2, 1) / 3, forward (2, -1, -2) / 3: no component is zero.
+#[test]
+fn a_tilted_camera_sees_as_an_upright_one_does() {
+    let tilted = Camera {
+        eye: [1.0, 2.0, 3.0],
+        target: [3.0, 1.0, 1.0],
+        up: [4.0, 4.0, 2.0],
+        ..camera(PERSPECTIVE)
+    };
+    let [right, up, front] = [8.0 / 3.0, 4.0 / 3.0, 4.0 / 3.0];
+    let at = [
+        1.0 + right + 2.0 * up + 2.0 * front,
+        2.0 - 2.0 * right + 2.0 * up - front,
+        3.0 + 2.0 * right + up - 2.0 * front,
+    ];
+    let matrix = tilted.matrix(2.0).expect("a sound camera");
+    let clip = matrix
+        .rows
+        .map(|r| r[0] * at[0] + r[1] * at[1] + r[2] * at[2] + r[3]);
+    let w = clip[3];
+    near(
+        [clip[0] / w, clip[1] / w, clip[2] / w, w],
+        [1.0, 1.0, 0.625, 4.0],
+    );
+}
+
 #[test]
 fn an_orthographic_view_does_not() {
     let camera = camera(ORTHOGRAPHIC);

@@ -2,27 +2,28 @@ use triptych_spec::abuffer::{NOTHING, Opaque};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
 
-use super::compare;
+use super::{compare, key_at};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 
-/// Two pixels side by side. Rows 0 and 1 cover both at key 7, row 2 at key 9; row 3 lies
-/// outside, row 4 has no area.
+/// Two rows of two pixels. Triangles 0 and 1 cover all at key 7, 2 at key 9; 3 lies outside,
+/// 4 has no area, 5 covers the first pixel of the second row at key 4.
 fn primitives() -> Primitives {
     let all = |key| [[-2048, -2048, key], [4096, -2048, key], [-2048, 4096, key]];
     let outside = [[4096, 0, 1], [8192, 0, 1], [4096, 4096, 1]];
-    let corners = [all(7), all(7), all(9), outside, [[0, 0, 1]; 3]];
+    let one = [[0, 256, 4], [300, 256, 4], [0, 556, 4]];
+    let corners = [all(7), all(7), all(9), outside, [[0, 0, 1]; 3], one];
     Primitives {
         size: Size {
             width: 2,
-            height: 1,
+            height: 2,
         },
         bits: 8,
         snapped: corners.concat(),
-        prims: (0..5)
+        prims: (0..6)
             .map(|row| [3 * row, 3 * row + 1, 3 * row + 2])
             .collect(),
-        source: (0..5).collect(),
+        source: (0..6).collect(),
     }
 }
 
@@ -72,7 +73,7 @@ fn every_difference_has_its_cause() {
     );
     assert_eq!(cause(1, 3), Some(Cause::Coverage), "one that is not there");
     assert_eq!(cause(1, 4), Some(Cause::Coverage), "one without area");
-    assert_eq!(cause(7, 5), Some(Cause::Coverage), "a row that nobody has");
+    assert_eq!(cause(7, 6), Some(Cause::Coverage), "a row that nobody has");
     assert_eq!(cause(NOTHING, NOTHING), Some(Cause::Coverage), "nothing");
 }
 
@@ -101,4 +102,10 @@ fn surfaces_of_another_size_are_not_compared() {
         assert_eq!(judgement.causes.get(&Cause::ReferenceMissing), Some(&1));
         assert_eq!(judgement.compared, 0);
     }
+}
+
+#[test]
+fn a_key_is_that_of_the_pixel() {
+    let seen = [0, 1, 2, 3].map(|pixel| key_at(&primitives(), 5, pixel));
+    assert_eq!(seen, [None, None, Some(4), None]);
 }
