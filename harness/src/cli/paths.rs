@@ -1,11 +1,10 @@
 //! Which raster paths of which adapters a command runs.
 
-use clap::ValueEnum;
 use triptych_gpu::raster::Path;
 
 use super::adapters::OnAdapters;
 use crate::again::option;
-use crate::replay::gpu::{Adapter, Adapters};
+use crate::replay::gpu::{Adapter, Adapters, PathName};
 
 /// Adapters and paths; all of them without one.
 #[derive(clap::Args)]
@@ -15,26 +14,6 @@ pub struct OnPaths {
     /// Only this raster path (repeatable)
     #[arg(long)]
     path: Vec<PathName>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum PathName {
-    /// The hardware's rasteriser
-    Fragment,
-    /// Integer arithmetic in baseline WGSL
-    Compute,
-    /// The same with 64-bit integers, where an adapter has them
-    Native,
-}
-
-impl PathName {
-    fn path(self) -> Path {
-        match self {
-            Self::Fragment => Path::Fragment,
-            Self::Compute => Path::Compute,
-            Self::Native => Path::Native,
-        }
-    }
 }
 
 impl OnPaths {

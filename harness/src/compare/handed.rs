@@ -204,28 +204,37 @@ fn place(size: Size, corners: [Position<f32>; 3], step: f64) -> Place {
     let pixel =
         |[x, y, z, w]: Position<f64>| [x * HALF + middle[0] * w, -y * HALF + middle[1] * w, z, w];
     let pixels = exact.map(pixel);
-    let planes = Plane::all(size);
-    let polygon = clip_triangle(&planes, pixels, |_, plain| plain);
+    let polygon = clip_triangle(&Plane::all(size), pixels, |_, plain| plain);
     if polygon.is_empty() {
         return Place::Nowhere;
     }
-    // Clipped in depth alone: a driver need not clip x and y.
-    let [near, far, ..] = planes;
-    let deep = clip_triangle(&[near, far, near, far, near, far], pixels, |_, plain| plain);
     let screen = |[x, y, _, w]: &Position<f64>| [x / w, y / w];
-    let normalised = |p: &Position<f64>| {
-        let [x, y] = screen(p);
-        [(x - middle[0]) / HALF, (y - middle[1]) / HALF, 1.0 / p[3]]
+    let corners: Vec<[f64; 2]> = polygon.iter().map(screen).collect();
+    let reach = reach(size, exact, pixels).before_snapping();
+    let region = Region::new(&corners, step + reach);
+    region.map_or(Place::Unjudged, Place::There)
+}
+
+/// What the reach of a triangle follows from: its corners in clip space, and in pixels before
+/// their division.
+fn reach(size: Size, corners: [Position<f64>; 3], pixels: [Position<f64>; 3]) -> Reach {
+    let [near, far, ..] = Plane::all(size);
+    let middle = [size.width, size.height].map(middle);
+    // Clipped in depth alone: a driver need not clip x and y.
+    let deep = clip_triangle(&[near, far, near, far, near, far], pixels, |_, plain| plain);
+    let normalised = |[x, y, _, w]: &Position<f64>| {
+        [
+            (x / w - middle[0]) / HALF,
+            (y / w - middle[1]) / HALF,
+            1.0 / w,
+        ]
     };
-    let reach = Reach {
-        corners: exact,
+    Reach {
+        corners,
         deep: deep.iter().map(normalised).collect(),
         target: [size.width, size.height].map(|side| f64::from(side) / 2.0 / HALF),
         middle: middle[0].abs().max(middle[1].abs()),
-    };
-    let corners: Vec<[f64; 2]> = polygon.iter().map(screen).collect();
-    let region = Region::new(&corners, step + reach.before_snapping());
-    region.map_or(Place::Unjudged, Place::There)
+    }
 }
 
 /// The middle of the viewport along an axis, in pixels of the target.

@@ -28,7 +28,7 @@
 mod certificate;
 mod membership;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod unowned;
 
 use triptych_spec::abuffer::{Lists, Sorted};

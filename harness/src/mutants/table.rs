@@ -9,6 +9,7 @@ use triptych_gpu::wgsl::{Sources, WgslError};
 use super::Outcome;
 use crate::cause::Cause;
 use crate::corpus::{self, Entry};
+use crate::replay::gpu::PathName;
 use crate::text::hex;
 
 const TABLES: [(&str, &str); 3] = [
@@ -58,24 +59,6 @@ struct Patch {
     file: String,
     find: String,
     replace: String,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum PathName {
-    Fragment,
-    Compute,
-    Native,
-}
-
-impl PathName {
-    fn path(self) -> Path {
-        match self {
-            Self::Fragment => Path::Fragment,
-            Self::Compute => Path::Compute,
-            Self::Native => Path::Native,
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

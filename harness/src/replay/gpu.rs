@@ -3,6 +3,7 @@
 mod from;
 mod judge;
 mod lists;
+mod path_name;
 mod vertices;
 
 use std::borrow::Cow;
@@ -28,6 +29,7 @@ use crate::plan::Plan;
 use crate::row::Class;
 pub use from::From;
 use lists::{join, relink};
+pub use path_name::PathName;
 pub use vertices::Vertices;
 
 /// One GPU leg of one scene.

@@ -5,7 +5,7 @@ use triptych_spec::raster::{Fragment, cover};
 use triptych_spec::scene::{Scene, Size, Triangle, Vertex};
 use triptych_spec::vertex::{clip, snap, transform};
 
-use super::Handed;
+use super::{HALF, Handed, reach};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 
@@ -142,4 +142,31 @@ fn what_cannot_be_judged_is_counted() {
         "{}",
         triangles.note
     );
+}
+
+/// Corners of w 2 and 4, in clip space and in pixels of a target whose middle is at (24, 16).
+#[test]
+fn the_reach_is_that_of_the_divided_corners() {
+    let corners = [
+        [0.5, -1.0, 1.0, 2.0],
+        [-1.0, 0.5, 2.0, 4.0],
+        [1.0, 1.0, 1.0, 2.0],
+    ];
+    let pixel = |[x, y, z, w]: [f64; 4]| [x * HALF + 24.0 * w, -y * HALF + 16.0 * w, z, w];
+    let reach = reach(SIZE, corners, corners.map(pixel));
+    assert_eq!(reach.corners, corners);
+    let divided = [[0.25, 0.5, 0.5], [-0.25, -0.125, 0.25], [0.5, -0.5, 0.5]];
+    assert_eq!(reach.deep, divided, "x, y down, one over w");
+    assert_eq!(reach.target, [24.0 / HALF, 16.0 / HALF]);
+    assert_eq!(reach.middle, 24.0);
+}
+
+/// The driver is handed clip space of the guard rectangle, in which the target's middle is
+/// the middle.
+#[test]
+fn what_is_handed_is_centred() {
+    let handed = Handed::new(&scene(), STEP);
+    let share = [48.0, 32.0].map(|side: f32| side / 4096.0);
+    let [x, y, z] = scene().vertices[0].position;
+    assert_eq!(handed.triangles[0][0], [x * share[0], y * share[1], z, 1.0]);
 }

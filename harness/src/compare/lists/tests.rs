@@ -48,8 +48,8 @@ fn expected(sorted: &Sorted) -> Expected<'_> {
     }
 }
 
-/// Lists of the band, of which every node was counted.
-fn lists(heads: [u32; 2], nodes: Vec<Node>) -> Lists {
+/// Lists of which every node was counted.
+pub(in crate::compare) fn lists(heads: &[u32], nodes: Vec<Node>) -> Lists {
     let stored = u32::try_from(nodes.len()).expect("few");
     Lists {
         heads: heads.to_vec(),
@@ -61,7 +61,7 @@ fn lists(heads: [u32; 2], nodes: Vec<Node>) -> Lists {
 }
 
 fn judge(heads: [u32; 2], nodes: Vec<Node>) -> Judgement {
-    compare(&expected(&sorted()), &lists(heads, nodes))
+    compare(&expected(&sorted()), &lists(&heads, nodes))
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn sound() -> Vec<Node> {
 #[test]
 fn a_wrong_counter_is_overflow() {
     for attempts in [3, 5] {
-        let mut wrong = lists([2, 3], sound());
+        let mut wrong = lists(&[2, 3], sound());
         wrong.attempts = attempts;
         let judgement = compare(&expected(&sorted()), &wrong);
         assert_eq!(
@@ -145,7 +145,7 @@ fn a_wrong_counter_is_overflow() {
 /// One address was handed out twice: a list runs into the other, or into itself.
 #[test]
 fn addresses_that_are_shared_explain_every_fault() {
-    let mut shared = lists([1, 2], vec![node(0, EOL), node(1, 0), node(1, 1)]);
+    let mut shared = lists(&[1, 2], vec![node(0, EOL), node(1, 0), node(1, 1)]);
     shared.attempts = 1;
     let judgement = compare(&expected(&sorted()), &shared);
     assert_eq!(
@@ -163,7 +163,7 @@ fn empty_lists_are_what_is_compared_without_fragments() {
         offsets: vec![0, 2, 2, 2, 2, 2, 2],
         fragments: sorted().fragments[..2].to_vec(),
     };
-    let judgement = compare(&expected(&none), &lists([EOL; 2], Vec::new()));
+    let judgement = compare(&expected(&none), &lists(&[EOL; 2], Vec::new()));
     assert_eq!((judgement.compared, judgement.differ()), (2, 0));
     assert_eq!(judgement.unit, "empty lists");
 }
@@ -172,7 +172,7 @@ fn empty_lists_are_what_is_compared_without_fragments() {
 /// counter that of the attempt with enough room.
 #[test]
 fn what_overflowed_is_a_part_and_was_counted() {
-    let mut stored = lists([2, 1], vec![node(0, EOL), node(0, EOL), node(1, 0)]);
+    let mut stored = lists(&[2, 1], vec![node(0, EOL), node(0, EOL), node(1, 0)]);
     (stored.attempts, stored.capacity) = (4, 3);
     let judged = |lists: &Lists| compare_overflowed(&expected(&sorted()), lists, 4);
     let sound = judged(&stored);

@@ -27,17 +27,17 @@ fn primitives() -> Primitives {
     }
 }
 
-/// The first pixel shows row 0; the second shows what is given, and must show row 0.
-fn judge(key: u32, prim: u32) -> Judgement {
-    let spec = Opaque {
-        key: vec![7; 2],
-        prim: vec![0; 2],
-    };
-    let other = Opaque {
+/// Row 0 in the first pixel, and this in the second.
+fn shown(key: u32, prim: u32) -> Opaque {
+    Opaque {
         key: vec![7, key],
         prim: vec![0, prim],
-    };
-    compare(&spec, &other, &primitives())
+    }
+}
+
+/// Judges what the second pixel shows; it must show row 0.
+fn judge(key: u32, prim: u32) -> Judgement {
+    compare(&shown(7, 0), &shown(key, prim), &primitives())
 }
 
 fn cause(key: u32, prim: u32) -> Option<Cause> {
@@ -89,16 +89,11 @@ fn differences_are_told_in_words() {
 
 #[test]
 fn surfaces_of_another_size_are_not_compared() {
-    let spec = Opaque {
-        key: vec![7; 2],
-        prim: vec![0; 2],
-    };
-    for (keys, prims) in [(1, 2), (2, 1)] {
-        let other = Opaque {
-            key: vec![7; keys],
-            prim: vec![0; prims],
-        };
-        let judgement = compare(&spec, &other, &primitives());
+    let (mut keys, mut prims) = (shown(7, 0), shown(7, 0));
+    keys.key.pop();
+    prims.prim.pop();
+    for other in [keys, prims] {
+        let judgement = compare(&shown(7, 0), &other, &primitives());
         assert_eq!(judgement.causes.get(&Cause::ReferenceMissing), Some(&1));
         assert_eq!(judgement.compared, 0);
     }

@@ -1,9 +1,10 @@
-use triptych_spec::abuffer::{EOL, Lists, Node, Sorted};
+use triptych_spec::abuffer::{EOL, Node, Sorted};
 use triptych_spec::raster::Fragment;
 
 use super::{compare, flatten, words};
 use crate::cause::Cause;
 use crate::compare::Judgement;
+use crate::compare::lists::tests::lists;
 
 /// Keys of rows 0 to 3; rows 1 and 2 tie.
 const KEYS: [u32; 4] = [5, 7, 7, 9];
@@ -14,17 +15,6 @@ fn node(prim: usize, next: u32) -> Node {
         next,
         prim: u32::try_from(prim).expect("one of four"),
         mask: 1,
-    }
-}
-
-fn lists(heads: &[u32], nodes: Vec<Node>) -> Lists {
-    let stored = u32::try_from(nodes.len()).expect("few");
-    Lists {
-        heads: heads.to_vec(),
-        colours: vec![[0.0; 4]; nodes.len()],
-        nodes,
-        attempts: stored,
-        capacity: 8,
     }
 }
 
