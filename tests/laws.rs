@@ -12,6 +12,10 @@
 //! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
 //! | `abuffer` | lists, capacity, conservation, permutation, order of insertion |
 //! | `abuffer::resolve` | closed forms and bounds of blending; powers of two |
+//! | `grid::rays` | brute force; reversal, parts, translation, splits, resolution; exact arithmetic |
+//! | `grid::cells` | which cells list a triangle; linked lists; bricks; boundaries; limits |
+//! | `grid::kernel` | no arithmetic that WGSL allows leads past what a ray meets |
+//! | `grid::meshes` | no ray leaves a closed mesh unseen |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:
@@ -34,6 +38,8 @@ mod loose;
 mod matrix;
 #[path = "laws/raster.rs"]
 mod raster;
+#[path = "laws/samples.rs"]
+mod samples;
 #[path = "laws/vertex.rs"]
 mod vertex;
 #[path = "laws/world.rs"]

@@ -10,6 +10,7 @@ pub mod ceiling;
 pub mod context;
 pub mod error;
 pub mod frame;
+pub mod grid;
 pub mod kernel;
 pub mod pass;
 pub mod raster;

@@ -63,6 +63,16 @@ fn wide_shift(a: Wide, bits: u32) -> Wide {
     return vec2(a.x << bits, (a.y << bits) | (a.x >> (32u - bits)));
 }
 
+// floor(a / 2^24), for a below 2^55 in size.
+fn wide_floor24(a: Wide) -> i32 {
+    return bitcast<i32>((a.y << 8u) | (a.x >> 24u));
+}
+
+// a modulo 2^24.
+fn wide_low24(a: Wide) -> i32 {
+    return bitcast<i32>(a.x & 0xffffffu);
+}
+
 // Not negative; relative error at most 2 units (a conversion and a sum).
 fn wide_to_f32(a: Wide) -> f32 {
     return f32(a.y) * 4294967296.0 + f32(a.x);

@@ -46,6 +46,16 @@ fn wide_shift(a: Wide, bits: u32) -> Wide {
     return a << bits;
 }
 
+// floor(a / 2^24), for a below 2^55 in size.
+fn wide_floor24(a: Wide) -> i32 {
+    return i32(a >> 24u);
+}
+
+// a modulo 2^24.
+fn wide_low24(a: Wide) -> i32 {
+    return i32(a & 0xffffffli);
+}
+
 // Not negative; relative error at most 2 units.
 fn wide_to_f32(a: Wide) -> f32 {
     return f32(a);

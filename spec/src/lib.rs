@@ -11,11 +11,13 @@
 //! | [`vertex`] | transform, clip, snap | `gpu/src/vertex.wgsl` |
 //! | [`raster`] | cover | `gpu/src/raster.wgsl` |
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
+//! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 #![forbid(unsafe_code)]
 
 pub mod abuffer;
 pub mod bound;
 pub mod camera;
+pub mod grid;
 pub mod matrix;
 pub mod raster;
 pub mod scene;

@@ -14,7 +14,7 @@ use triptych_spec::scene::{Scene, Triangle};
 use triptych_spec::vertex::Primitives;
 
 use super::config;
-use super::grid::{fragments, soup};
+use super::samples::{fragments, soup};
 
 /// Opacities: opaque, invisible, nearly either, anything.
 fn opacity() -> impl Strategy<Value = f32> {

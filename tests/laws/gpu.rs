@@ -14,7 +14,7 @@ use triptych_spec::vertex::{GUARD, guard_origin};
 
 use super::abuffer::{Layers, coloured};
 use super::config;
-use super::grid::soup_on;
+use super::samples::soup_on;
 
 /// Opened once: that takes longer than all that they are asked.
 fn adapters() -> &'static [Adapter] {

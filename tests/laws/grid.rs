@@ -1,144 +1,125 @@
-//! Random triangles on the sub-pixel grid.
+//! Grids and rays: nothing that a ray meets is missed, whatever the cells.
+
+#[path = "grid/cells.rs"]
+mod cells;
+#[path = "grid/kernel.rs"]
+mod kernel;
+#[path = "grid/meshes.rs"]
+mod meshes;
+#[path = "grid/rays.rs"]
+mod rays;
 
 use proptest::prelude::*;
-use triptych_spec::raster::{Fragment, cover};
-use triptych_spec::scene::Size;
-use triptych_spec::vertex::{DEPTH_ONE, GUARD, Primitives, guard_origin};
+use proptest::sample::Index;
+use triptych_spec::grid::hit::crossing;
+use triptych_spec::grid::lattice::{EXTENT, Point, REACH};
+use triptych_spec::grid::ray::Ray;
+use triptych_spec::grid::resolution::Resolution;
+use triptych_spec::grid::trace::Closest;
+use triptych_spec::grid::{Blockers, Grid, Membership};
 
-/// Corners of a triangle: x and y in sub-pixels, z key.
-pub type Triangle = [[i32; 3]; 3];
-
-/// Targets small enough to look at every sample of them.
-pub fn size() -> impl Strategy<Value = Size> {
-    (1_u32..=20, 1_u32..=20).prop_map(|(width, height)| Size { width, height })
-}
-
-/// Around a target's side: anywhere, on centres and borders of pixels, at the end of
-/// the guard rectangle.
-pub fn coordinate(side: u32, bits: u32) -> BoxedStrategy<i32> {
-    let one = 1 << bits;
-    let low = guard_origin(side) << bits;
-    let high = low + (GUARD << bits);
-    let side = side.cast_signed();
-    let margin = one * (side / 4 + 1);
+/// A coordinate: near the middle, at the ends, anywhere.
+fn coordinate() -> BoxedStrategy<i32> {
     prop_oneof![
-        6 => -margin..=one * side + margin,
-        4 => (-1..=2 * side + 1).prop_map(move |half| half * one / 2),
-        1 => low..=high,
-        1 => prop::sample::select(vec![low, high]),
+        4 => -40..=40_i32,
+        2 => (-40..=40_i32).prop_map(|c| c * 4096),
+        1 => -EXTENT..=EXTENT,
+        1 => prop::sample::select(vec![-EXTENT, EXTENT]),
     ]
     .boxed()
 }
 
-/// Any depth key, and more often than not the ends of the scale.
-pub fn depth() -> impl Strategy<Value = i32> {
-    prop_oneof![3 => 0..=DEPTH_ONE, 1 => 0..3, 1 => DEPTH_ONE - 2..=DEPTH_ONE]
+fn point() -> BoxedStrategy<Point> {
+    [coordinate(), coordinate(), coordinate()].boxed()
 }
 
-/// A corner around a target.
-pub fn corner(size: Size, bits: u32) -> BoxedStrategy<[i32; 3]> {
-    let (x, y) = (coordinate(size.width, bits), coordinate(size.height, bits));
-    (x, y, depth()).prop_map(|(x, y, z)| [x, y, z]).boxed()
+/// Triangles that share corners now and then; some without area.
+fn blockers() -> impl Strategy<Value = Blockers> {
+    (
+        prop::collection::vec(point(), 1..12),
+        prop::collection::vec(any::<[Index; 3]>(), 0..16),
+    )
+        .prop_map(|(vertices, rows)| {
+            let row = |row: [Index; 3]| row.map(|i| u32::try_from(i.index(vertices.len())).unwrap());
+            Blockers {
+                triangles: rows.into_iter().map(row).collect(),
+                vertices,
+            }
+        })
 }
 
-/// A triangle: any, small, thin, or without area.
-pub fn triangle(size: Size, bits: u32) -> BoxedStrategy<Triangle> {
-    let free = || corner(size, bits);
-    let one = 1 << bits;
-    let near = move |reach: i32| {
-        (free(), [-reach..=reach, -reach..=reach], depth())
-            .prop_map(|([x, y, z], [dx, dy], dz)| ([x, y, z], [x + dx, y + dy, dz]))
-    };
+/// What a scene decides, or a few cells.
+fn resolution() -> impl Strategy<Value = Resolution> {
     prop_oneof![
-        4 => [free(), free(), free()],
-        2 => (near(one), free()).prop_map(|((a, b), c)| [a, b, c]),
-        2 => (near(2 * one), [-one..=one, -one..=one], depth())
-            .prop_map(|((a, b), [dx, dy], z)| [a, b, [a[0] + dx, a[1] + dy, z]]),
-        1 => [free(), free()].prop_map(|[a, b]| [a, b, a]),
-        1 => whole_guard(size, bits),
+        Just(Resolution::FromScene),
+        [1..9_u32, 1..9_u32, 1..9_u32].prop_map(Resolution::Given),
+    ]
+}
+
+fn membership() -> impl Strategy<Value = Membership> {
+    prop::sample::select(vec![Membership::Box, Membership::Overlap])
+}
+
+/// A grid of random triangles.
+fn grids() -> impl Strategy<Value = (Blockers, Grid)> {
+    (blockers(), resolution(), membership()).prop_map(|(blockers, resolution, membership)| {
+        let grid = Grid::build(&blockers, resolution, membership).expect("within the limits");
+        (blockers, grid)
+    })
+}
+
+/// A place worth starting or ending at: corners of triangles and of cells, points on edges
+/// and beside all of them, and any.
+fn place(blockers: &Blockers, grid: &Grid) -> BoxedStrategy<Point> {
+    let vertices = blockers.vertices.clone();
+    let axes = grid.axes.each_ref().map(|axis| axis.boundaries().to_vec());
+    let [x, y, z] = axes.map(prop::sample::select);
+    let corner = prop::sample::select(vertices);
+    let beside = (corner.clone(), [-1..=1_i32, -1..=1, -1..=1]);
+    let middle = (corner.clone(), corner.clone()).prop_map(|(a, b)| {
+        [0, 1, 2].map(|i| i32::midpoint(a[i], b[i]))
+    });
+    prop_oneof![
+        2 => corner,
+        2 => beside.prop_map(|(a, b)| [0, 1, 2].map(|i| a[i] + b[i])),
+        2 => middle,
+        2 => [x, y, z],
+        2 => point(),
+        1 => [-REACH..=REACH, -REACH..=REACH, -REACH..=REACH],
     ]
     .boxed()
 }
 
-/// Half of the guard rectangle, parallel to the screen: the largest numerators, which
-/// the area divides exactly.
-fn whole_guard(size: Size, bits: u32) -> impl Strategy<Value = Triangle> {
-    let ends = move |side: u32| [0, GUARD].map(|end| (guard_origin(side) + end) << bits);
-    let ([left, right], [top, bottom]) = (ends(size.width), ends(size.height));
-    (depth(), 0_usize..4).prop_map(move |(z, without)| {
-        let mut corners = vec![
-            [left, top, z],
-            [right, top, z],
-            [right, bottom, z],
-            [left, bottom, z],
-        ];
-        corners.remove(without);
-        [corners[0], corners[1], corners[2]]
+/// A ray between places, along an axis, or in any direction.
+fn rays(blockers: &Blockers, grid: &Grid) -> BoxedStrategy<Ray> {
+    let place = place(blockers, grid);
+    let unit = prop::sample::select(vec![-1.0, -0.0, 0.0, 1.0, 1e-30, 3e20, 1.0 / 3.0]);
+    let free = [unit.clone(), unit.clone(), unit];
+    prop_oneof![
+        4 => (place.clone(), place.clone()).prop_map(|(a, b)| Ray::between(a, b)),
+        2 => (place.clone(), place.clone()).prop_map(|(a, b)| Ray {
+            segment: false,
+            ..Ray::between(a, b)
+        }),
+        2 => (place, free).prop_map(|(origin, direction)| Ray::along(origin, direction)),
+    ]
+    .boxed()
+}
+
+/// Triangles in a grid, and rays at them.
+fn aimed() -> impl Strategy<Value = (Blockers, Grid, Vec<Ray>)> {
+    grids().prop_flat_map(|(blockers, grid)| {
+        let rays = prop::collection::vec(rays(&blockers, &grid), 1..12);
+        (Just(blockers), Just(grid), rays)
     })
 }
 
-/// Triangles of any kind, on a grid of any fineness.
-pub fn soup(count: std::ops::Range<usize>) -> impl Strategy<Value = Primitives> {
-    (1_u32..=8).prop_flat_map(move |bits| soup_on(bits, count.clone()))
-}
-
-/// Triangles of any kind on a grid of so many sub-pixel bits.
-pub fn soup_on(bits: u32, count: std::ops::Range<usize>) -> impl Strategy<Value = Primitives> {
-    size().prop_flat_map(move |size| {
-        prop::collection::vec(triangle(size, bits), count.clone())
-            .prop_map(move |triangles| primitives(size, bits, &triangles))
-    })
-}
-
-/// Triangles as the raster stage takes them, each from a source triangle of its own.
-pub fn primitives(size: Size, bits: u32, triangles: &[Triangle]) -> Primitives {
-    let rows = 0..u32::try_from(triangles.len()).expect("few triangles");
-    Primitives {
-        size,
-        bits,
-        snapped: triangles.concat(),
-        prims: rows
-            .clone()
-            .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-            .collect(),
-        source: rows.collect(),
-    }
-}
-
-/// The corners of every row.
-pub fn triangles(primitives: &Primitives) -> Vec<Triangle> {
-    let corners = |row: &[u32; 3]| row.map(|v| primitives.snapped[v as usize]);
-    primitives.prims.iter().map(corners).collect()
-}
-
-/// Every fragment, in order of triangle, row and column.
-pub fn fragments(primitives: &Primitives) -> Vec<Fragment> {
-    let mut all = Vec::new();
-    cover(primitives, |f| all.push(f));
-    all
-}
-
-/// How many triangles cover each pixel.
-pub fn times(primitives: &Primitives) -> Vec<u32> {
-    let mut times = vec![0; primitives.size.pixels()];
-    cover(primitives, |f| times[f.pixel as usize] += 1);
-    times
-}
-
-/// Every pixel with its sample's place, in row-major order.
-pub fn samples(size: Size, bits: u32) -> impl Iterator<Item = (u32, [i128; 2])> {
-    let centre = move |p: u32| (i128::from(p) << bits) + (1 << (bits - 1));
-    (0..size.width * size.height)
-        .map(move |p| (p, [centre(p % size.width), centre(p / size.width)]))
-}
-
-/// Twice the signed area of three points.
-pub fn area(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
-    let [[ax, ay], [bx, by], [cx, cy]] = [a, b, c].map(|p| p.map(i64::from));
-    (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-}
-
-/// The first two coordinates.
-pub fn flat([x, y, _]: [i32; 3]) -> [i32; 2] {
-    [x, y]
+/// The nearest triangle, of all.
+fn nearest(blockers: &Blockers, ray: &Ray) -> Option<Closest> {
+    (0..u32::try_from(blockers.triangles.len()).unwrap())
+        .filter_map(|prim| {
+            let time = crossing(ray, blockers.corners(prim))?;
+            Some(Closest { prim, time })
+        })
+        .min_by_key(|c| (c.time, c.prim))
 }

@@ -9,7 +9,7 @@ use triptych_spec::scene::Size;
 use triptych_spec::vertex::{DEPTH_ONE, GUARD, guard_origin};
 
 use super::config;
-use super::grid::{Triangle, fragments, primitives, samples, soup, triangle, triangles};
+use super::samples::{Triangle, fragments, primitives, samples, soup, triangle, triangles};
 
 /// The top-left rule, said another way: a sample belongs to a triangle if it lies
 /// strictly inside once it is moved right by an infinitesimal, and down by one that
@@ -51,7 +51,7 @@ fn anonymous(fragments: &[Fragment]) -> Vec<[u32; 3]> {
 }
 
 fn one_triangle() -> impl Strategy<Value = (Size, u32, Triangle)> {
-    (super::grid::size(), 1_u32..=8)
+    (super::samples::size(), 1_u32..=8)
         .prop_flat_map(|(size, bits)| (Just(size), Just(bits), triangle(size, bits)))
 }
 

@@ -7,7 +7,7 @@ use triptych_spec::vertex::Primitives;
 
 use crate::abuffer::painted;
 use crate::config;
-use crate::grid::{
+use crate::samples::{
     self, Triangle, area, corner, depth, flat, fragments, primitives, samples, size, times,
 };
 
@@ -39,7 +39,7 @@ fn parts([a, b, c]: Triangle, p: [i32; 3]) -> [Triangle; 3] {
 /// Corners of a star around a hub, in order, and the hub.
 fn star() -> impl Strategy<Value = (Size, u32, Vec<[i32; 2]>, [i32; 2])> {
     (size(), 1_u32..=8).prop_flat_map(|(size, bits)| {
-        let hub = [size.width, size.height].map(|side| grid::coordinate(side, bits));
+        let hub = [size.width, size.height].map(|side| samples::coordinate(side, bits));
         // The guard's ends are too far for a star; what strays is brought back.
         let near = move |x: i32| x.clamp(-(8 << bits), 28 << bits);
         (hub, prop::collection::vec(1_i32..=20 << bits, 3..12)).prop_map(move |(hub, radii)| {

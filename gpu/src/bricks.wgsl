@@ -1,0 +1,82 @@
+// Bricks of 4 x 4 x 4 cells, a bit for each cell that lists anything: an empty brick is
+// crossed in one step.
+
+// Two words a brick; x fastest, in a brick and among them.
+@group(0) @binding(14) var<storage, read_write> bricks: array<u32>;
+
+fn brick_counts() -> vec3<u32> {
+    return (vec3(cells.x, cells.y, cells.z) + 3u) / 4u;
+}
+
+fn brick_of(cell: vec3<u32>) -> u32 {
+    let counts = brick_counts();
+    let brick = cell / 4u;
+    return brick.x + counts.x * (brick.y + counts.y * brick.z);
+}
+
+fn bit_of(cell: vec3<u32>) -> u32 {
+    let at = cell % 4u;
+    return at.x + 4u * at.y + 16u * at.z;
+}
+
+fn brick_is_empty(cell: vec3<i32>) -> bool {
+    let brick = 2u * brick_of(vec3<u32>(cell));
+    return (bricks[brick] | bricks[brick + 1u]) == 0u;
+}
+
+// The bits of a brick.
+fn words_of(brick: u32) -> vec2<u32> {
+    let counts = brick_counts();
+    let first = 4u * vec3(brick % counts.x, brick / counts.x % counts.y, brick / (counts.x * counts.y));
+    let end = min(first + 4u, vec3(cells.x, cells.y, cells.z));
+    var words = vec2(0u);
+    for (var z = first.z; z < end.z; z += 1u) {
+        for (var y = first.y; y < end.y; y += 1u) {
+            for (var x = first.x; x < end.x; x += 1u) {
+                let cell = number(vec3(x, y, z));
+                let bit = bit_of(vec3(x, y, z));
+                let full = u32(offsets[cell] < offsets[cell + 1u]);
+                words[bit / 32u] |= full << (bit % 32u);
+            }
+        }
+    }
+    return words;
+}
+
+// The last cell of the brick on each axis, in the direction of the ray.
+fn last_of_brick(cell: vec3<i32>, up: vec3<i32>) -> vec3<i32> {
+    let first = cell / 4 * 4;
+    let end = min(first + 3, vec3<i32>(vec3(cells.x, cells.y, cells.z)) - 1);
+    return select(first, end, up == vec3(1));
+}
+
+// The neighbour of an empty brick that the ray enters next.
+fn past_brick(way: Way, cell: vec3<i32>) -> vec3<i32> {
+    let last = last_of_brick(cell, way.up);
+    let exit = exits(way, last);
+    let time = soonest(exit);
+    let start = starts();
+    let x = settled(cell.x, last.x, start.x, way.step.x, way.up.x, way.origin.x, way.inverse.x, time);
+    let y = settled(cell.y, last.y, start.y, way.step.y, way.up.y, way.origin.y, way.inverse.y, time);
+    let z = settled(cell.z, last.z, start.z, way.step.z, way.up.z, way.origin.z, way.inverse.z, time);
+    if exit.x <= min(exit.y, exit.z) {
+        return vec3(last.x + way.step.x, y, z);
+    }
+    if exit.y <= exit.z {
+        return vec3(x, last.y + way.step.y, z);
+    }
+    return vec3(x, y, last.z + way.step.z);
+}
+
+// The cell of an axis at a time, between a cell and the last one of its brick: at most three
+// on, in steps of two and one.
+fn settled(cell: i32, last: i32, start: u32, step: i32, up: i32, origin: f32, inverse: f32, time: f32) -> i32 {
+    var at = cell;
+    if (last - at) * step >= 2 && crossing(at + step + up, start, origin, inverse) <= time {
+        at += 2 * step;
+    }
+    if (last - at) * step >= 1 && crossing(at + up, start, origin, inverse) <= time {
+        at += step;
+    }
+    return at;
+}

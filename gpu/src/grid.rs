@@ -1,0 +1,111 @@
+//! Grids on the device: cells' lists, and rays through them.
+//!
+//! Each stage can be handed what the stage before should have made, or takes what this
+//! device made of it. Twin: `spec/src/grid.rs`.
+
+mod device;
+mod stages;
+
+use bytemuck::{Pod, Zeroable};
+use triptych_spec::grid::lattice::Point;
+use triptych_spec::grid::ray::Ray;
+
+pub use device::Device;
+pub use stages::{Attempt, Stages};
+
+/// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.
+pub const TILE: u32 = 1024;
+
+/// Lists up to so long are sorted by one invocation each. Twin: `SHORT` in `grid.wgsl`.
+pub const SHORT: u32 = 64;
+
+/// What an invocation does at most within a dispatch. Twin: `STEPS` in `cells.wgsl`.
+pub const STEPS: u32 = 16_384;
+
+/// A ray that has not started, and one that is done. Twins in `search.wgsl`.
+pub const FRESH: u32 = u32::MAX;
+/// See [`FRESH`].
+pub const DONE: u32 = u32::MAX - 1;
+
+/// What every kernel is told. Twin: `Cells` in `cells.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Cells {
+    /// Cells along x.
+    pub x: u32,
+    /// Cells along y.
+    pub y: u32,
+    /// Cells along z.
+    pub z: u32,
+    /// 1: cells that a triangle does not touch, though its box does, drop it.
+    pub overlap: u32,
+    /// Triangles, cells, bricks, entries or rays of a dispatch.
+    pub items: u32,
+    /// First cell of each triangle's box in a dispatch.
+    pub first: u32,
+    /// Entries that there is room for.
+    pub capacity: u32,
+    /// Entries that are in order already, in a row.
+    pub run: u32,
+}
+
+/// An entry of a linked list. Twin: `Entry` in `grid.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub struct Entry {
+    /// The triangle.
+    pub prim: u32,
+    /// The next entry, or the end of the list.
+    pub next: u32,
+}
+
+/// The paper's lists, as a device left them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Linked {
+    /// First entry of each cell's list.
+    pub heads: Vec<u32>,
+    /// Entries by address, as many as the capacity.
+    pub entries: Vec<Entry>,
+    /// The counter.
+    pub attempts: u32,
+}
+
+/// What a ray met. Twin: `Hit` in `search.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Hit {
+    /// The triangle, or [`triptych_spec::abuffer::NOTHING`].
+    pub prim: u32,
+    /// When, if anything was met.
+    pub time: f32,
+    /// [`DONE`], for rays that have been traced.
+    pub state: u32,
+    /// Where in a list the search stood.
+    pub at: u32,
+}
+
+/// A ray as kernels read it. Twin: `Ray` in `march.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct Packed {
+    origin: [f32; 3],
+    segment: u32,
+    direction: [f32; 3],
+    unused: u32,
+}
+
+impl From<&Ray> for Packed {
+    fn from(ray: &Ray) -> Self {
+        Self {
+            origin: exact(ray.origin),
+            segment: ray.segment.into(),
+            direction: exact(ray.direction),
+            unused: 0,
+        }
+    }
+}
+
+/// Lattice points have 24 bits, which `f32` holds.
+fn exact(point: Point) -> [f32; 3] {
+    point.map(|c| c as f32)
+}

@@ -1,0 +1,162 @@
+//! Buffers of a grid, and dispatches over them.
+
+use std::time::{Duration, Instant};
+
+use triptych_spec::grid::axis::Axis;
+use triptych_spec::grid::{Blockers, Membership};
+
+use super::{Cells, exact};
+use crate::context::Gpu;
+use crate::error::GpuError;
+use crate::frame::WORKGROUP;
+use crate::kernel::{Kernel, Kernels, Pipeline};
+
+/// Most workgroups along a dimension of a dispatch (WebGPU's default).
+const GROUPS: u32 = 65_535;
+
+/// What all stages share.
+pub struct Device<'g> {
+    pub(super) gpu: &'g Gpu,
+    kernels: &'g Kernels,
+    /// What kernels are told, but for what a dispatch adds.
+    pub(super) cells: Cells,
+    /// Triangles.
+    pub(super) triangles: u32,
+    boundaries: wgpu::Buffer,
+    corners: wgpu::Buffer,
+    unfinished: wgpu::Buffer,
+}
+
+impl<'g> Device<'g> {
+    /// Uploads triangles and boundaries.
+    ///
+    /// # Errors
+    /// Limits by name, and whatever the device reports.
+    pub fn new(
+        gpu: &'g Gpu,
+        kernels: &'g Kernels,
+        blockers: &Blockers,
+        axes: &[Axis; 3],
+        membership: Membership,
+    ) -> Result<Self, GpuError> {
+        let boundaries = axes.iter().flat_map(|axis| axis.boundaries());
+        let boundaries: Vec<f32> = boundaries.map(|b| *b as f32).collect();
+        let rows = 0..blockers.triangles.len();
+        let triangles = u32::try_from(rows.len()).map_err(|_| GpuError::Limit {
+            adapter: gpu.name.clone(),
+            what: "triangles",
+            needed: rows.len() as u64,
+            limit: u32::MAX.into(),
+        })?;
+        let corners = (0..triangles).flat_map(|prim| blockers.corners(prim));
+        let corners: Vec<[f32; 3]> = corners.map(exact).collect();
+        let [x, y, z] = axes.each_ref().map(Axis::cells);
+        Ok(Self {
+            cells: Cells {
+                x,
+                y,
+                z,
+                overlap: (membership == Membership::Overlap).into(),
+                ..Cells::default()
+            },
+            triangles,
+            boundaries: gpu.upload("cell boundaries", &boundaries)?,
+            corners: gpu.upload("corners of triangles", &corners)?,
+            unfinished: gpu.storage("unfinished", 4)?,
+            gpu,
+            kernels,
+        })
+    }
+
+    /// Number of cells.
+    pub fn total(&self) -> u32 {
+        self.cells.x * self.cells.y * self.cells.z
+    }
+
+    /// One invocation for each item.
+    pub(super) fn each(
+        &self,
+        entry: &str,
+        cells: Cells,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Duration, GpuError> {
+        self.dispatch(entry, cells, cells.items.div_ceil(WORKGROUP), buffers)
+    }
+
+    /// So many workgroups; waits for the end.
+    pub(super) fn dispatch(
+        &self,
+        entry: &str,
+        cells: Cells,
+        groups: u32,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Duration, GpuError> {
+        let kernel = self.kernels.compute(self.gpu, "grid", entry)?;
+        let uniform = self.gpu.uniform("cells", &cells)?;
+        let mut all = vec![
+            ("cells", &uniform),
+            ("boundaries", &self.boundaries),
+            ("corners", &self.corners),
+            ("unfinished", &self.unfinished),
+        ];
+        all.extend_from_slice(buffers);
+        let group = kernel.bind(self.gpu, &all);
+        let mut encoder = self.gpu.encoder();
+        record(&mut encoder, &kernel, &group, groups);
+        let start = Instant::now();
+        self.gpu.submit(encoder)?;
+        Ok(start.elapsed())
+    }
+
+    /// What kernels left to be done, which is nothing afterwards.
+    pub(super) fn take_unfinished(&self) -> Result<u32, GpuError> {
+        let left: Vec<u32> = self.gpu.read(&self.unfinished, 1)?;
+        let mut encoder = self.gpu.encoder();
+        encoder.clear_buffer(&self.unfinished, 0, None);
+        self.gpu.submit(encoder)?;
+        Ok(left[0])
+    }
+
+    /// Runs a kernel that goes through the cells of each triangle, until it has been through
+    /// all.
+    pub(super) fn sweep(
+        &self,
+        entry: &str,
+        capacity: u32,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Duration, GpuError> {
+        let mut time = Duration::ZERO;
+        for first in (0..self.total()).step_by(super::STEPS as usize) {
+            let cells = Cells {
+                items: self.triangles,
+                first,
+                capacity,
+                ..self.cells
+            };
+            time += self.each(entry, cells, buffers)?;
+            if self.take_unfinished()? == 0 {
+                break;
+            }
+        }
+        Ok(time)
+    }
+}
+
+/// Records a pass of its own: what it writes is there for the next.
+fn record(
+    encoder: &mut wgpu::CommandEncoder,
+    kernel: &Kernel,
+    group: &wgpu::BindGroup,
+    groups: u32,
+) {
+    let Pipeline::Compute(pipeline) = &kernel.pipeline else {
+        unreachable!("grids have compute kernels only");
+    };
+    if groups == 0 {
+        return;
+    }
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(groups.min(GROUPS), groups.div_ceil(GROUPS), 1);
+}

@@ -1,0 +1,238 @@
+//! What the host does for each stage.
+
+use std::time::Duration;
+
+use triptych_spec::abuffer::EOL;
+use triptych_spec::grid::ray::Ray;
+use triptych_spec::grid::trace::Query;
+
+use super::device::Device;
+use super::{Cells, DONE, Entry, FRESH, Hit, Linked, Packed, SHORT, STEPS, TILE};
+use crate::error::GpuError;
+
+/// Rays of one dispatch: 32 bytes each, within 128 MiB.
+const RAYS: usize = 1 << 22;
+
+/// Entries with what there was room for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attempt<T> {
+    /// The result.
+    pub value: T,
+    /// Entries that there was room for.
+    pub capacity: u32,
+}
+
+/// A grid in the making. Stages are called in order; each takes what was given in its place, or
+/// what the one before made.
+pub struct Stages<'g> {
+    device: Device<'g>,
+    counts: wgpu::Buffer,
+    offsets: wgpu::Buffer,
+    prims: wgpu::Buffer,
+    bricks: wgpu::Buffer,
+    /// Time on the device of what ran last, without transfers.
+    pub time: Duration,
+}
+
+impl<'g> Stages<'g> {
+    /// Room for counts and offsets.
+    ///
+    /// # Errors
+    /// Limits by name, and whatever the device reports.
+    pub fn new(device: Device<'g>) -> Result<Self, GpuError> {
+        let (gpu, total) = (device.gpu, u64::from(device.total()));
+        let bricks = [device.cells.x, device.cells.y, device.cells.z].map(|n| n.div_ceil(4));
+        let bricks: u64 = bricks.into_iter().map(u64::from).product();
+        Ok(Self {
+            counts: gpu.storage("counts of cells", 4 * total)?,
+            offsets: gpu.storage("offsets of cells", 4 * (total + 1))?,
+            prims: gpu.storage("entries of cells", 4)?,
+            bricks: gpu.storage("bricks", 8 * bricks)?,
+            device,
+            time: Duration::ZERO,
+        })
+    }
+
+    /// Stage `count`.
+    ///
+    /// # Errors
+    /// Whatever the device reports; so for all stages.
+    pub fn count(&mut self) -> Result<Vec<u32>, GpuError> {
+        let buffers = [("counts", &self.counts)];
+        self.time = self.device.sweep("count", 0, &buffers)?;
+        self.device.gpu.read(&self.counts, self.device.total() as usize)
+    }
+
+    /// Puts counts in place of the device's own.
+    pub fn give_counts(&mut self, counts: &[u32]) -> Result<(), GpuError> {
+        self.counts = self.device.gpu.upload("counts of cells", counts)?;
+        Ok(())
+    }
+
+    /// Stage `scan`.
+    pub fn scan(&mut self) -> Result<Vec<u32>, GpuError> {
+        let total = self.device.total();
+        let tiles = total.div_ceil(TILE);
+        let sums = self.device.gpu.storage("sums of tiles", 4 * u64::from(tiles))?;
+        let buffers = [
+            ("counts", &self.counts),
+            ("offsets", &self.offsets),
+            ("sums", &sums),
+        ];
+        let cells = Cells {
+            items: total,
+            ..self.device.cells
+        };
+        self.time = self.device.dispatch("scan_tiles", cells, tiles, &buffers)?;
+        self.time += self.device.dispatch("scan_sums", cells, 1, &buffers)?;
+        self.time += self.device.dispatch("scan", cells, tiles, &buffers)?;
+        self.device.gpu.read(&self.offsets, total as usize + 1)
+    }
+
+    /// Puts offsets in place of the device's own.
+    pub fn give_offsets(&mut self, offsets: &[u32]) -> Result<(), GpuError> {
+        self.offsets = self.device.gpu.upload("offsets of cells", offsets)?;
+        Ok(())
+    }
+
+    /// Stage `fill`: `entries` of them, of which `capacity` have room. Counts are used up. Lists
+    /// are put in order if all have.
+    pub fn fill(&mut self, entries: u32, capacity: u32) -> Result<Attempt<Vec<u32>>, GpuError> {
+        let gpu = self.device.gpu;
+        self.prims = gpu.storage("entries of cells", 4 * u64::from(capacity))?;
+        let buffers = [
+            ("counts", &self.counts),
+            ("offsets", &self.offsets),
+            ("prims", &self.prims),
+        ];
+        self.time = self.device.sweep("fill", capacity, &buffers)?;
+        if entries <= capacity {
+            self.sort(entries)?;
+        }
+        Ok(Attempt {
+            value: gpu.read(&self.prims, capacity as usize)?,
+            capacity,
+        })
+    }
+
+    /// Each list in order of id.
+    fn sort(&mut self, entries: u32) -> Result<(), GpuError> {
+        let runs = |items, run| Cells {
+            items,
+            run,
+            ..self.device.cells
+        };
+        let buffers = [("offsets", &self.offsets), ("prims", &self.prims)];
+        let total = self.device.total();
+        self.time += self.device.each("fill_sort", runs(total, 0), &buffers)?;
+        let longest = self.device.take_unfinished()?;
+        if longest <= SHORT {
+            return Ok(());
+        }
+        let mut merged = self.device.gpu.storage("entries of cells", 4 * u64::from(entries))?;
+        let mut run = 1;
+        while run < longest {
+            let buffers = [
+                ("offsets", &self.offsets),
+                ("prims", &self.prims),
+                ("merged", &merged),
+            ];
+            self.time += self.device.each("fill_merge", runs(entries, run), &buffers)?;
+            std::mem::swap(&mut self.prims, &mut merged);
+            run *= 2;
+        }
+        Ok(())
+    }
+
+    /// Puts entries in place of the device's own.
+    pub fn give_prims(&mut self, prims: &[u32]) -> Result<(), GpuError> {
+        self.prims = self.device.gpu.upload("entries of cells", prims)?;
+        Ok(())
+    }
+
+    /// Stage `link`: the paper's lists.
+    pub fn link(&mut self, capacity: u32) -> Result<Linked, GpuError> {
+        let (gpu, total) = (self.device.gpu, self.device.total());
+        let heads = gpu.filled("heads", total, EOL)?;
+        let entries = gpu.storage("entries of lists", 8 * u64::from(capacity))?;
+        let counter = gpu.storage("counter", 4)?;
+        let buffers = [
+            ("heads", &heads),
+            ("entries", &entries),
+            ("counter", &counter),
+        ];
+        self.time = self.device.sweep("link", capacity, &buffers)?;
+        let attempts: Vec<u32> = gpu.read(&counter, 1)?;
+        Ok(Linked {
+            heads: gpu.read(&heads, total as usize)?,
+            entries: gpu.read::<Entry>(&entries, capacity as usize)?,
+            attempts: attempts[0],
+        })
+    }
+
+    /// Stage `trace`: what each ray meets.
+    pub fn trace(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
+        let [x, y, z] = [self.device.cells.x, self.device.cells.y, self.device.cells.z];
+        let bricks = Cells {
+            items: x.div_ceil(4) * y.div_ceil(4) * z.div_ceil(4),
+            ..self.device.cells
+        };
+        let buffers = [("offsets", &self.offsets), ("bricks", &self.bricks)];
+        self.time = self.device.each("trace_bricks", bricks, &buffers)?;
+        let mut hits = Vec::with_capacity(rays.len());
+        for rays in rays.chunks(RAYS) {
+            hits.extend(self.trace_part(rays, query)?);
+        }
+        Ok(hits)
+    }
+
+    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry.
+    fn rounds(&self) -> u64 {
+        let cells = u64::from(self.device.cells.x + self.device.cells.y + self.device.cells.z);
+        let entries = self.prims.size() / 4;
+        (cells + entries).div_ceil(u64::from(STEPS)) + 1
+    }
+
+    fn trace_part(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
+        let gpu = self.device.gpu;
+        let packed: Vec<Packed> = rays.iter().map(Packed::from).collect();
+        let items = u32::try_from(rays.len()).expect("at most RAYS");
+        let rays = gpu.upload("rays", &packed)?;
+        let fresh = Hit {
+            prim: 0,
+            time: 0.0,
+            state: FRESH,
+            at: 0,
+        };
+        let hits = gpu.upload("hits", &vec![fresh; packed.len()])?;
+        let buffers = [
+            ("offsets", &self.offsets),
+            ("prims", &self.prims),
+            ("bricks", &self.bricks),
+            ("rays", &rays),
+            ("hits", &hits),
+        ];
+        let entry = match query {
+            Query::Any => "trace_any",
+            Query::Closest => "trace_closest",
+        };
+        let cells = Cells {
+            items,
+            ..self.device.cells
+        };
+        for _ in 0..self.rounds() {
+            self.time += self.device.each(entry, cells, &buffers)?;
+            if self.device.take_unfinished()? == 0 {
+                break;
+            }
+        }
+        let hits: Vec<Hit> = gpu.read(&hits, packed.len())?;
+        match hits.iter().all(|hit| hit.state == DONE) {
+            true => Ok(hits),
+            false => Err(GpuError::Endless {
+                adapter: gpu.name.clone(),
+                stage: "trace",
+            }),
+        }
+    }
+}

@@ -1,0 +1,143 @@
+// A ray's way through the cells (Amanatides and Woo 1987): integer cells, and the time of each
+// boundary worked out anew. Up to 2^23 in size, boundaries and origins have exact differences;
+// their times are off by a division and a product, for which cells are widened.
+
+struct Ray {
+    origin: vec3<f32>,
+    // 1 if it ends at origin + direction.
+    segment: u32,
+    direction: vec3<f32>,
+    unused: u32,
+}
+
+// Later than anything that a ray meets within the lattice.
+const NEVER: f32 = 3.0e38;
+
+struct March {
+    cell: vec3<i32>,
+    // When the cell is left, on each axis.
+    exit: vec3<f32>,
+}
+
+// What does not change along a way.
+struct Way {
+    origin: vec3<f32>,
+    inverse: vec3<f32>,
+    // -1, 0 or 1.
+    step: vec3<i32>,
+    // 1 where the far boundary of a cell has the higher number.
+    up: vec3<i32>,
+}
+
+fn way(ray: Ray) -> Way {
+    let moves = ray.direction != vec3(0.0);
+    let divisor = select(vec3(1.0), ray.direction, moves);
+    let step = vec3<i32>(sign(ray.direction));
+    return Way(ray.origin, 1.0 / divisor, step, vec3<i32>(step > vec3(0)));
+}
+
+fn crossing(boundary: i32, start: u32, origin: f32, inverse: f32) -> f32 {
+    return (boundaries[start + u32(boundary)] - origin) * inverse;
+}
+
+fn exit_x(way: Way, cell: i32) -> f32 {
+    if way.step.x == 0 {
+        return NEVER;
+    }
+    return crossing(cell + way.up.x, 0u, way.origin.x, way.inverse.x);
+}
+
+fn exit_y(way: Way, cell: i32) -> f32 {
+    if way.step.y == 0 {
+        return NEVER;
+    }
+    return crossing(cell + way.up.y, starts().y, way.origin.y, way.inverse.y);
+}
+
+fn exit_z(way: Way, cell: i32) -> f32 {
+    if way.step.z == 0 {
+        return NEVER;
+    }
+    return crossing(cell + way.up.z, starts().z, way.origin.z, way.inverse.z);
+}
+
+fn exits(way: Way, cell: vec3<i32>) -> vec3<f32> {
+    return vec3(exit_x(way, cell.x), exit_y(way, cell.y), exit_z(way, cell.z));
+}
+
+// When the first boundary of an axis is crossed; 0 if the ray starts behind it.
+fn entry_on(start: u32, count: u32, step: i32, origin: f32, inverse: f32) -> f32 {
+    if step == 0 {
+        return 0.0;
+    }
+    return crossing(select(i32(count), 0, step > 0), start, origin, inverse);
+}
+
+// The cell of an axis at a time; -1 beside the grid.
+fn cell_on(start: u32, count: u32, step: i32, origin: f32, inverse: f32, time: f32) -> i32 {
+    if step == 0 {
+        let passed = boundaries_up_to(start, count + 1u, origin);
+        return select(-1, i32(passed) - 1, passed <= count);
+    }
+    // The first is passed by the choice of `time`; evaluated again it may come out later.
+    var low = 1;
+    var high = i32(count) + 1;
+    while low < high {
+        let middle = (low + high) / 2;
+        let boundary = select(i32(count) - middle, middle, step > 0);
+        if crossing(boundary, start, origin, inverse) <= time {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    let nth = min(low, i32(count)) - 1;
+    return select(i32(count) - 1 - nth, nth, step > 0);
+}
+
+// Where the ray enters the grid; a negative component if it does not.
+fn entrance(ray: Ray, way: Way) -> vec3<i32> {
+    let start = starts();
+    var time = entry_on(start.x, cells.x, way.step.x, way.origin.x, way.inverse.x);
+    time = max(time, entry_on(start.y, cells.y, way.step.y, way.origin.y, way.inverse.y));
+    time = max(time, entry_on(start.z, cells.z, way.step.z, way.origin.z, way.inverse.z));
+    time = max(time, 0.0);
+    if all(way.step == vec3(0)) || (ray.segment == 1u && time > 1.0) {
+        return vec3(-1);
+    }
+    return vec3(
+        cell_on(start.x, cells.x, way.step.x, way.origin.x, way.inverse.x, time),
+        cell_on(start.y, cells.y, way.step.y, way.origin.y, way.inverse.y, time),
+        cell_on(start.z, cells.z, way.step.z, way.origin.z, way.inverse.z, time),
+    );
+}
+
+fn inside(cell: vec3<i32>) -> bool {
+    return all(cell >= vec3(0)) && all(cell < vec3<i32>(vec3(cells.x, cells.y, cells.z)));
+}
+
+// Across the boundary that comes first.
+fn stepped(way: Way, given: March) -> March {
+    var march = given;
+    if march.exit.x <= min(march.exit.y, march.exit.z) {
+        march.cell.x += way.step.x;
+        if inside(march.cell) {
+            march.exit.x = exit_x(way, march.cell.x);
+        }
+    } else if march.exit.y <= march.exit.z {
+        march.cell.y += way.step.y;
+        if inside(march.cell) {
+            march.exit.y = exit_y(way, march.cell.y);
+        }
+    } else {
+        march.cell.z += way.step.z;
+        if inside(march.cell) {
+            march.exit.z = exit_z(way, march.cell.z);
+        }
+    }
+    return march;
+}
+
+fn soonest(exit: vec3<f32>) -> f32 {
+    return min(exit.x, min(exit.y, exit.z));
+}

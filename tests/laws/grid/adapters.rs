@@ -1,0 +1,91 @@
+//! Random grids on every adapter, with words and with native integers: the spec's lists to the
+//! bit, and its answer to every ray.
+
+use std::sync::OnceLock;
+
+use proptest::prelude::*;
+use triptych_gpu::context::{Gpu, adapters};
+use triptych_gpu::grid::{Device, Stages};
+use triptych_gpu::kernel::Kernels;
+use triptych_gpu::wgsl::Sources;
+use triptych_spec::abuffer::{EOL, NOTHING};
+use triptych_spec::grid::hit::crossing;
+use triptych_spec::grid::ray::Ray;
+use triptych_spec::grid::trace::{Query, closest};
+use triptych_spec::grid::{Blockers, Cells, Grid, Membership, count};
+
+use super::aimed;
+use crate::config;
+
+/// Opened once, with kernels of both kinds.
+fn devices() -> &'static [(Gpu, Vec<Kernels>)] {
+    static DEVICES: OnceLock<Vec<(Gpu, Vec<Kernels>)>> = OnceLock::new();
+    DEVICES.get_or_init(|| {
+        let open = |adapter: wgpu::Adapter| {
+            let gpu = Gpu::open(&adapter).expect("a device");
+            let natives = [false, true].into_iter().take(1 + usize::from(gpu.has_int64()));
+            let kernels = natives.map(|native| Kernels::new(Sources::shipped(native)));
+            let kernels = kernels.collect();
+            (gpu, kernels)
+        };
+        let all: Vec<_> = adapters(wgpu::Backends::VULKAN).into_iter().map(open).collect();
+        assert!(!all.is_empty(), "no adapter; `triptych doctor` says what is missing");
+        all
+    })
+}
+
+/// Each stage from the spec's input.
+fn agrees(stages: &mut Stages, blockers: &Blockers, grid: &Grid, rays: &[Ray]) -> Result<(), TestCaseError> {
+    let cells = Cells { axes: &grid.axes, membership: Membership::Box };
+    let counts = count(blockers, &cells);
+    let entries = u32::try_from(grid.prims.len()).unwrap();
+    prop_assert_eq!(stages.count().unwrap(), &counts[..]);
+    stages.give_counts(&counts).unwrap();
+    prop_assert_eq!(stages.scan().unwrap(), &grid.offsets[..]);
+    prop_assert_eq!(stages.fill(entries, entries).unwrap().value, &grid.prims[..]);
+    let linked = stages.link(entries).unwrap();
+    prop_assert_eq!(linked.attempts, entries);
+    for (cell, head) in linked.heads.iter().enumerate() {
+        let mut list = Vec::new();
+        let mut at = *head;
+        while at != EOL {
+            list.push(linked.entries[at as usize].prim);
+            at = linked.entries[at as usize].next;
+            prop_assert!(list.len() <= linked.entries.len(), "a cycle");
+        }
+        list.sort_unstable();
+        prop_assert_eq!(&list[..], &grid.prims[grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize]);
+    }
+    let any = stages.trace(rays, Query::Any).unwrap();
+    let nearest = stages.trace(rays, Query::Closest).unwrap();
+    for ((ray, any), nearest) in rays.iter().zip(any).zip(nearest) {
+        let expected = closest(grid, blockers, *ray);
+        prop_assert_eq!(any.prim != NOTHING, expected.is_some(), "{:?}", ray);
+        prop_assert_eq!(nearest.prim != NOTHING, expected.is_some(), "{:?}", ray);
+        if let Some(expected) = expected {
+            prop_assert!(crossing(ray, blockers.corners(any.prim)).is_some());
+            let time = crossing(ray, blockers.corners(nearest.prim));
+            let time = time.expect("it is met").value();
+            prop_assert!((f64::from(nearest.time) - time).abs() <= 0.01 * time);
+            prop_assert!(time <= 1.02 * expected.time.value());
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(48))]
+
+    #[test]
+    fn random_grids((blockers, grid, rays) in aimed()) {
+        let cells = triptych_spec::grid::resolution::Resolution::Given(grid.axes.each_ref().map(|a| a.cells()));
+        let grid = Grid::build(&blockers, cells, Membership::Box).expect("as before");
+        for (gpu, kernels) in devices() {
+            for kernels in kernels {
+                let device = Device::new(gpu, kernels, &blockers, &grid.axes, Membership::Box).unwrap();
+                let mut stages = Stages::new(device).unwrap();
+                agrees(&mut stages, &blockers, &grid, &rays)?;
+            }
+        }
+    }
+}
