@@ -11,7 +11,7 @@ use triptych_spec::grid::lattice::Point;
 use triptych_spec::grid::ray::Ray;
 
 pub use device::Device;
-pub use stages::{Attempt, Stages};
+pub use stages::Stages;
 
 /// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.
 pub const TILE: u32 = 1024;

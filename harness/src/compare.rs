@@ -3,6 +3,7 @@
 
 pub mod embree;
 pub mod fragments;
+pub mod grid;
 pub mod handed;
 pub mod image;
 pub mod lists;

@@ -25,6 +25,7 @@ pub mod observe;
 pub mod output;
 pub mod picture;
 pub mod plan;
+pub mod rays;
 pub mod registry;
 pub mod replay;
 pub mod report;

@@ -10,10 +10,21 @@
 pub struct Family {
     /// The stem.
     pub name: &'static str,
+    /// Which scenes it is for.
+    pub chain: Chain,
     /// Its stages, in the order in which they run.
     pub stages: &'static [Stage],
     /// Why it has no scenes of its own, if it has none.
     pub no_corpus: Option<&'static str>,
+}
+
+/// What a scene is replayed as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chain {
+    /// Triangles to a picture.
+    Frame,
+    /// Triangles in a grid, and rays at them: a scene with a `[grid]`.
+    Rays,
 }
 
 /// A stage. Its name is that of the spec's function, of its pass in a plan, and of the
@@ -48,6 +59,7 @@ pub const PLACE_HANDED: &str = "place_handed";
 pub const FAMILIES: &[Family] = &[
     Family {
         name: "vertex",
+        chain: Chain::Frame,
         stages: &[
             vertex("transform", &["transform"]),
             vertex("clip", &["clip"]),
@@ -57,6 +69,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "raster",
+        chain: Chain::Frame,
         stages: &[Stage {
             name: "cover",
             compute: Twin::Entries(&["cover"]),
@@ -66,6 +79,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "abuffer",
+        chain: Chain::Frame,
         stages: &[
             Stage {
                 name: "opaque",
@@ -79,6 +93,18 @@ pub const FAMILIES: &[Family] = &[
             },
             per_pixel("sort", &["sort"]),
             per_pixel("resolve", &["resolve"]),
+        ],
+        no_corpus: None,
+    },
+    Family {
+        name: "grid",
+        chain: Chain::Rays,
+        stages: &[
+            in_cells("count", &["count"]),
+            in_cells("scan", &["scan_tiles", "scan_sums", "scan"]),
+            in_cells("fill", &["fill", "fill_sort", "fill_merge"]),
+            in_cells("link", &["link"]),
+            in_cells("trace", &["trace_bricks", "trace_any", "trace_closest"]),
         ],
         no_corpus: None,
     },
@@ -148,6 +174,20 @@ const fn per_pixel(name: &'static str, entries: &'static [&'static str]) -> Stag
         compute: Twin::Entries(entries),
         fragment: Twin::None("works on pixels, not on triangles: one kernel serves both paths"),
     }
+}
+
+const fn in_cells(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on triangles, cells and rays, not on fragments"),
+    }
+}
+
+/// The stages of a chain, in the order in which they run.
+pub fn stages_of(chain: Chain) -> impl Iterator<Item = &'static Stage> {
+    let families = FAMILIES.iter().filter(move |family| family.chain == chain);
+    families.flat_map(|family| family.stages)
 }
 
 /// Every stage, in the order in which they run.

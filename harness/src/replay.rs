@@ -7,6 +7,7 @@ pub mod embree;
 pub mod end_to_end;
 pub mod facts;
 pub mod gpu;
+pub mod grid;
 mod hardware;
 mod legs;
 mod own_vertices;
@@ -26,7 +27,7 @@ use crate::cache::Cache;
 use crate::corpus::Entry;
 use crate::dump::Dump;
 use crate::error::InputError;
-use crate::plan::Plan;
+use crate::plan::Pass;
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{LoadError, load_entry};
@@ -34,6 +35,7 @@ use crate::sheet::Sheet;
 use facts::Facts;
 use gpu::{Adapter, Broken, From, Vertices};
 use rows::Rows;
+pub use run::passes;
 use run::{Run, Stop};
 use worst::Worst;
 
@@ -110,7 +112,7 @@ pub struct Outcome {
     /// Pixels that differ, the worst first.
     pub worst: Worst,
     /// What ran.
-    pub plan: Option<Plan>,
+    pub passes: Vec<Pass>,
     /// GPU legs of which skipping was tested, and the milliseconds that it saved.
     pub saved: Vec<(String, f64)>,
     /// What the spec found, for a snapshot.
@@ -158,7 +160,7 @@ impl Outcome {
             rows: rows.rows,
             described: rows.described,
             worst: Worst::default(),
-            plan: None,
+            passes: Vec::new(),
             saved: Vec::new(),
             facts: None,
             pictures: Vec::new(),

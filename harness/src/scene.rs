@@ -4,6 +4,7 @@ pub mod expect;
 pub mod file;
 mod fit;
 mod flatten;
+pub mod grid;
 mod shade;
 mod source;
 #[cfg(test)]

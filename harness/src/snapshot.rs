@@ -18,21 +18,15 @@ pub fn folder(corpus: &Path) -> PathBuf {
 /// The facts, one a line. Nothing of it is a float.
 pub fn text(facts: &Facts) -> String {
     let Facts {
-        size,
-        triangles,
-        degenerate,
-        prims,
-        opaque_pixels,
-        fragments,
-        longest_list,
+        counts,
         runs,
         hashes,
     } = facts;
-    let mut text = format!(
-        "size: {size}\ntriangles: {triangles}\ndegenerate: {degenerate}\nprims: {prims}\n\
-         opaque_pixels: {opaque_pixels}\nfragments: {fragments}\n\
-         longest_list: {longest_list}\nruns:\n"
-    );
+    let mut text = String::new();
+    for (of, count) in counts {
+        let _ = writeln!(text, "{of}: {count}");
+    }
+    text.push_str("runs:\n");
     for run in runs {
         let _ = writeln!(text, "  - {run}");
     }
@@ -92,13 +86,7 @@ mod tests {
 
     fn facts(fragments: u64) -> Facts {
         Facts {
-            size: "8 x 4".into(),
-            triangles: 2,
-            degenerate: 0,
-            prims: 2,
-            opaque_pixels: 0,
-            fragments,
-            longest_list: 1,
+            counts: vec![("size", "8 x 4".into()), ("fragments", fragments.to_string())],
             runs: vec!["build".into()],
             hashes: BTreeMap::from([("vertex", "0123456789abcdef".into())]),
         }

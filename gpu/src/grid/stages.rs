@@ -13,15 +13,6 @@ use crate::error::GpuError;
 /// Rays of one dispatch: 32 bytes each, within 128 MiB.
 const RAYS: usize = 1 << 22;
 
-/// Entries with what there was room for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Attempt<T> {
-    /// The result.
-    pub value: T,
-    /// Entries that there was room for.
-    pub capacity: u32,
-}
-
 /// A grid in the making. Stages are called in order; each takes what was given in its place, or
 /// what the one before made.
 pub struct Stages<'g> {
@@ -60,7 +51,9 @@ impl<'g> Stages<'g> {
     pub fn count(&mut self) -> Result<Vec<u32>, GpuError> {
         let buffers = [("counts", &self.counts)];
         self.time = self.device.sweep("count", 0, &buffers)?;
-        self.device.gpu.read(&self.counts, self.device.total() as usize)
+        self.device
+            .gpu
+            .read(&self.counts, self.device.total() as usize)
     }
 
     /// Puts counts in place of the device's own.
@@ -73,7 +66,10 @@ impl<'g> Stages<'g> {
     pub fn scan(&mut self) -> Result<Vec<u32>, GpuError> {
         let total = self.device.total();
         let tiles = total.div_ceil(TILE);
-        let sums = self.device.gpu.storage("sums of tiles", 4 * u64::from(tiles))?;
+        let sums = self
+            .device
+            .gpu
+            .storage("sums of tiles", 4 * u64::from(tiles))?;
         let buffers = [
             ("counts", &self.counts),
             ("offsets", &self.offsets),
@@ -97,7 +93,7 @@ impl<'g> Stages<'g> {
 
     /// Stage `fill`: `entries` of them, of which `capacity` have room. Counts are used up. Lists
     /// are put in order if all have.
-    pub fn fill(&mut self, entries: u32, capacity: u32) -> Result<Attempt<Vec<u32>>, GpuError> {
+    pub fn fill(&mut self, entries: u32, capacity: u32) -> Result<Vec<u32>, GpuError> {
         let gpu = self.device.gpu;
         self.prims = gpu.storage("entries of cells", 4 * u64::from(capacity))?;
         let buffers = [
@@ -109,10 +105,7 @@ impl<'g> Stages<'g> {
         if entries <= capacity {
             self.sort(entries)?;
         }
-        Ok(Attempt {
-            value: gpu.read(&self.prims, capacity as usize)?,
-            capacity,
-        })
+        gpu.read(&self.prims, capacity as usize)
     }
 
     /// Each list in order of id.
@@ -129,7 +122,10 @@ impl<'g> Stages<'g> {
         if longest <= SHORT {
             return Ok(());
         }
-        let mut merged = self.device.gpu.storage("entries of cells", 4 * u64::from(entries))?;
+        let mut merged = self
+            .device
+            .gpu
+            .storage("entries of cells", 4 * u64::from(entries))?;
         let mut run = 1;
         while run < longest {
             let buffers = [
@@ -137,7 +133,9 @@ impl<'g> Stages<'g> {
                 ("prims", &self.prims),
                 ("merged", &merged),
             ];
-            self.time += self.device.each("fill_merge", runs(entries, run), &buffers)?;
+            self.time += self
+                .device
+                .each("fill_merge", runs(entries, run), &buffers)?;
             std::mem::swap(&mut self.prims, &mut merged);
             run *= 2;
         }
@@ -172,7 +170,11 @@ impl<'g> Stages<'g> {
 
     /// Stage `trace`: what each ray meets.
     pub fn trace(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
-        let [x, y, z] = [self.device.cells.x, self.device.cells.y, self.device.cells.z];
+        let [x, y, z] = [
+            self.device.cells.x,
+            self.device.cells.y,
+            self.device.cells.z,
+        ];
         let bricks = Cells {
             items: x.div_ceil(4) * y.div_ceil(4) * z.div_ceil(4),
             ..self.device.cells

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::Verdict;
-use crate::plan::Plan;
+use crate::replay::passes;
 use crate::scene::load_entry;
 use crate::{corpus, output};
 
@@ -27,7 +27,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         for remark in loaded.stats.remarks() {
             writeln!(out, "  note  {remark}")?;
         }
-        for pass in Plan::new(&loaded.scene, true).passes {
+        for pass in passes(&loaded, true) {
             let what = if pass.runs { "run " } else { "skip" };
             writeln!(out, "  {what}  {:10}  {}", pass.name, pass.reason)?;
         }

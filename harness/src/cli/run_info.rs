@@ -75,8 +75,8 @@ fn broken_info(broken: &Broken) -> AdapterInfo {
 
 /// A scene's outcome as the report shows it.
 pub fn scene_report(outcome: Outcome) -> SceneReport {
-    let passes = outcome.plan.map(|plan| plan.passes).unwrap_or_default();
-    let mut plan: Vec<PlanLine> = passes
+    let mut plan: Vec<PlanLine> = outcome
+        .passes
         .into_iter()
         .map(|p| PlanLine {
             pass: p.name.into(),

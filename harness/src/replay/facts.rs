@@ -7,28 +7,18 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 use triptych_spec::abuffer::NOTHING;
 
+use super::grid::GridRun;
 use super::spec::SpecRun;
+use crate::rays::Kind;
 use crate::dump::Meta;
-use crate::plan::Plan;
+use crate::plan::Pass;
 use crate::scene::Loaded;
 
 /// Canonical facts of a scene at 8 sub-pixel bits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Facts {
-    /// Pixels, width by height.
-    pub size: String,
-    /// Source triangles.
-    pub triangles: u64,
-    /// Of these, without area in object space.
-    pub degenerate: u64,
-    /// Triangles after clipping.
-    pub prims: u64,
-    /// Pixels that show an opaque surface.
-    pub opaque_pixels: u64,
-    /// Fragments in lists.
-    pub fragments: u64,
-    /// Most fragments in one list.
-    pub longest_list: u32,
+    /// What was counted, in the order in which people read it.
+    pub counts: Vec<(&'static str, String)>,
     /// Passes that run.
     pub runs: Vec<String>,
     /// SHA-256 of each exact result, the first 16 digits.
@@ -37,7 +27,7 @@ pub struct Facts {
 
 impl Facts {
     /// The facts of a run.
-    pub fn new(loaded: &Loaded, spec: &SpecRun, plan: &Plan) -> Self {
+    pub fn new(loaded: &Loaded, spec: &SpecRun, passes: &[Pass]) -> Self {
         let SpecRun {
             primitives,
             opaque,
@@ -55,21 +45,19 @@ impl Facts {
             .fragments
             .iter()
             .flat_map(|f| [f.pixel, f.prim, f.key, f.mask]);
+        let shown = opaque.prim.iter().filter(|p| **p != NOTHING);
         let visible = opaque.key.iter().chain(&opaque.prim).copied();
         Self {
-            size: format!("{} x {}", primitives.size.width, primitives.size.height),
-            triangles: loaded.stats.triangles,
-            degenerate: loaded.stats.degenerate,
-            prims: primitives.prims.len() as u64,
-            opaque_pixels: opaque.prim.iter().filter(|p| **p != NOTHING).count() as u64,
-            fragments: sorted.fragments.len() as u64,
-            longest_list: lengths.max().unwrap_or(0),
-            runs: plan
-                .passes
-                .iter()
-                .filter(|p| p.runs)
-                .map(|p| p.name.to_owned())
-                .collect(),
+            counts: vec![
+                ("size", format!("{} x {}", primitives.size.width, primitives.size.height)),
+                ("triangles", loaded.stats.triangles.to_string()),
+                ("degenerate", loaded.stats.degenerate.to_string()),
+                ("prims", primitives.prims.len().to_string()),
+                ("opaque_pixels", shown.count().to_string()),
+                ("fragments", sorted.fragments.len().to_string()),
+                ("longest_list", lengths.max().unwrap_or(0).to_string()),
+            ],
+            runs: runs(passes),
             hashes: BTreeMap::from([
                 ("vertex", hash(snapped.chain(corners))),
                 ("opaque", hash(visible)),
@@ -80,6 +68,49 @@ impl Facts {
             ]),
         }
     }
+
+    /// The facts of a scene with a grid.
+    pub fn of_grid(loaded: &Loaded, spec: &GridRun, skip: bool) -> Self {
+        let grid = &spec.grid;
+        let cells = grid.axes.each_ref().map(|axis| axis.cells().to_string());
+        let full = spec.counts.iter().filter(|count| **count > 0);
+        let longest = spec.counts.iter().max().copied().unwrap_or(0);
+        let mut counts = vec![
+            ("cells", cells.join(" x ")),
+            ("triangles", loaded.stats.triangles.to_string()),
+            ("degenerate", loaded.stats.degenerate.to_string()),
+            ("full_cells", full.count().to_string()),
+            ("entries", grid.prims.len().to_string()),
+            ("longest_list", longest.to_string()),
+            ("lattice", format!("2^{}", spec.lattice.exponent)),
+        ];
+        let mut start = 0;
+        for (kind, end) in Kind::ALL.into_iter().zip(spec.ends) {
+            let met = spec.answers[start..end].iter().flatten().count();
+            counts.push((kind.name(), format!("{met} of {} rays blocked", end - start)));
+            start = end;
+        }
+        let boundaries = grid.axes.iter().flat_map(|axis| axis.boundaries().iter().copied());
+        let corners = spec.blockers.vertices.iter().flatten().copied();
+        let words = |i: i32| i.cast_unsigned();
+        let lists = grid.offsets.iter().chain(&grid.prims).copied();
+        let answers = spec.answers.iter().map(|a| a.map_or(NOTHING, |a| a.prim));
+        Self {
+            counts,
+            runs: runs(&super::passes(loaded, skip)),
+            hashes: BTreeMap::from([
+                ("blockers", hash(corners.map(words))),
+                ("boundaries", hash(boundaries.map(words))),
+                ("lists", hash(lists)),
+                ("closest", hash(answers)),
+            ]),
+        }
+    }
+}
+
+fn runs(passes: &[Pass]) -> Vec<String> {
+    let run = passes.iter().filter(|pass| pass.runs);
+    run.map(|pass| pass.name.to_owned()).collect()
 }
 
 /// First 16 digits of the SHA-256 of words, low byte first.

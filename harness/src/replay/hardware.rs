@@ -11,7 +11,7 @@ use crate::calibrate::{BITS_MIN, Grid};
 use crate::compare::handed::Handed;
 use crate::compare::{Judgement, compare};
 use crate::observe::{Gpu, Observed, Spec};
-use crate::registry::stages;
+use crate::registry::{Chain, stages_of};
 use crate::row::Class;
 
 /// Rows of a leg whose driver is handed clip space. Only coverage on the fragment path
@@ -29,7 +29,7 @@ pub fn run(
 ) -> Result<(), GpuError> {
     let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
     let nothing = scene.triangles.is_empty();
-    for stage in stages().map(|stage| stage.name) {
+    for stage in stages_of(Chain::Frame).map(|stage| stage.name) {
         let reason = match (path, stage) {
             (Path::Fragment, "cover") if nothing => "plan: no triangles",
             (Path::Fragment, "cover") => continue,

@@ -18,7 +18,10 @@ use crate::scene::value::Capacity;
 
 impl Run<'_> {
     /// Every adapter and path; legs that share a sub-pixel grid follow each other.
-    pub(super) fn gpu(&mut self) -> Result<(), Stop> {
+    pub(super) fn on_adapters(
+        &mut self,
+        leg: impl Fn(&mut Self, &Adapter, Path) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
         for broken in &self.options.broken {
             self.broken(broken);
         }
@@ -53,7 +56,7 @@ impl Run<'_> {
                 &skipping,
             ];
             let words = format!("{name} {driver}");
-            self.unit(Uses::Driver(&words), &inputs, |run| run.leg(adapter, path))?;
+            self.unit(Uses::Driver(&words), &inputs, |run| leg(run, adapter, path))?;
         }
         Ok(())
     }
@@ -71,7 +74,7 @@ impl Run<'_> {
         }
     }
 
-    fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
+    pub(super) fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         if path == Path::Native && adapter.native.is_none() {
             let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
             let stands_in = self.options.paths.contains(&Path::Compute);

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use triptych_spec::vertex::{self, SUBPIXEL_BITS};
 
 use super::facts::Facts;
+use super::grid::GridRun;
 use super::gpu::Adapter;
 use super::rows::Rows;
 use super::spec::{SpecRun, Times, timed};
@@ -14,7 +15,7 @@ use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
 use crate::observe::{Analytic, Observed, Spec};
-use crate::plan::Plan;
+use crate::plan::{GridPlan, Pass, Plan};
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
@@ -42,6 +43,8 @@ pub(super) struct Run<'a> {
     pub(super) plan: Plan,
     /// The spec's results on the grid that was asked for last.
     spec: Option<Rc<Observed<Spec, SpecRun>>>,
+    /// The spec's results of a scene with a grid.
+    pub(super) grid: Option<Rc<Observed<Spec, GridRun>>>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
     pub(super) sheets: Vec<Sheet>,
@@ -49,7 +52,7 @@ pub(super) struct Run<'a> {
     /// The first pixels at which Embree disagrees.
     pub(super) unlike: BTreeSet<u32>,
     pub(super) saved: Vec<(String, f64)>,
-    facts: Option<Facts>,
+    pub(super) facts: Option<Facts>,
     remarks: Vec<String>,
 }
 
@@ -61,6 +64,7 @@ impl<'a> Run<'a> {
             options,
             plan: Plan::new(&loaded.scene, options.skip),
             spec: None,
+            grid: None,
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
             sheets: Vec::new(),
@@ -73,13 +77,9 @@ impl<'a> Run<'a> {
     }
 
     pub(super) fn all(mut self) -> Result<Outcome, Stop> {
-        self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
-        if self.options.embree {
-            self.unit(Uses::Embree, &["embree"], Self::embree)?;
-            self.unit(Uses::Embree, &["embree", embree::WORLD], Self::world)?;
-        }
-        if self.options.gpu {
-            self.gpu()?;
+        match self.loaded.file.grid {
+            Some(_) => self.grid()?,
+            None => self.frame()?,
         }
         if self.rows.rows.is_empty() {
             let reason = "no other leg was asked for".to_owned();
@@ -101,13 +101,26 @@ impl<'a> Run<'a> {
             rows: self.rows.rows,
             described: self.rows.described,
             worst,
-            plan: Some(self.plan),
+            passes: passes(self.loaded, self.options.skip),
             saved: self.saved,
             facts: self.facts,
             pictures: self.pictures,
             sheets: shown::once(self.sheets),
             remarks: self.remarks,
         })
+    }
+
+    /// Triangles to a picture.
+    fn frame(&mut self) -> Result<(), Stop> {
+        self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
+        if self.options.embree {
+            self.unit(Uses::Embree, &["embree"], Self::embree)?;
+            self.unit(Uses::Embree, &["embree", embree::WORLD], Self::world)?;
+        }
+        match self.options.gpu {
+            true => self.on_adapters(Self::leg),
+            false => Ok(()),
+        }
     }
 
     /// Does a piece of work, or takes its result from the cache. `uses` and `inputs` are
@@ -198,7 +211,7 @@ impl<'a> Run<'a> {
     fn spec_alone(&mut self) -> Result<(), Stop> {
         let spec = self.spec(SUBPIXEL_BITS)?;
         self.analytic(&spec);
-        self.facts = Some(Facts::new(self.loaded, &spec.value, &self.plan));
+        self.facts = Some(Facts::new(self.loaded, &spec.value, &self.plan.passes));
         if self.options.pictures {
             self.pictures.extend(pictures::spec(&spec.value));
             self.sheets
@@ -259,6 +272,14 @@ impl<'a> Run<'a> {
         let spec = self.spec(SUBPIXEL_BITS)?;
         embree::run_world(self.loaded, self.options.world, &spec, &mut self.rows);
         Ok(())
+    }
+}
+
+/// What a scene needs.
+pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
+    match loaded.file.grid {
+        Some(_) => GridPlan::new(loaded, skip).passes,
+        None => Plan::new(&loaded.scene, skip).passes,
     }
 }
 

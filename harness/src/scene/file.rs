@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::expect::Expect;
+use super::grid::Grid;
 use super::value::{
     Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
 };
@@ -44,6 +45,8 @@ pub struct SceneFile {
     /// Options of the A-buffer.
     #[serde(default)]
     pub abuffer: Abuffer,
+    /// Its triangles block rays; with it the family `grid` runs in place of the others.
+    pub grid: Option<Grid>,
     /// Shares of what may go unjudged.
     #[serde(default)]
     pub budget: Budget,

@@ -1,0 +1,98 @@
+//! A scene whose triangles block rays: the family `grid`.
+
+mod gpu;
+mod spec;
+
+use std::rc::Rc;
+
+use triptych_gpu::error::GpuError;
+use triptych_gpu::raster::Path;
+
+use super::facts::Facts;
+use super::gpu::Adapter;
+use super::run::{Run, Stop};
+use crate::cache::Uses;
+use crate::cause::Cause;
+use crate::observe::{Observed, Spec};
+use crate::plan::GridPlan;
+use crate::registry::{Chain, stages_of};
+use crate::row::Class;
+use gpu::Leg;
+pub use spec::GridRun;
+
+impl Run<'_> {
+    /// The spec by itself, then every adapter.
+    pub(super) fn grid(&mut self) -> Result<(), Stop> {
+        self.unit(Uses::Nothing, &["grid", "spec"], |run| {
+            let spec = run.grid_spec()?;
+            run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
+            Ok(())
+        })?;
+        if self.options.gpu {
+            self.on_adapters(Self::grid_leg)?;
+        }
+        Ok(())
+    }
+
+    /// The spec's results, computed when first asked for.
+    fn grid_spec(&mut self) -> Result<Rc<Observed<Spec, GridRun>>, Stop> {
+        if let Some(spec) = &self.grid {
+            return Ok(spec.clone());
+        }
+        let run = GridRun::new(self.loaded).map_err(Stop::Input)?;
+        let spec = Rc::new(Observed::new("spec", run));
+        self.grid = Some(spec.clone());
+        Ok(spec)
+    }
+
+    fn grid_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
+        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let reason = match path {
+            Path::Fragment => Some("works on triangles, cells and rays, not on fragments"),
+            Path::Native if adapter.native.is_none() => {
+                Some("no 64-bit integers: compute takes its place")
+            }
+            _ => None,
+        };
+        if let Some(reason) = reason {
+            let reason = reason.to_owned();
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+            return Ok(());
+        }
+        let plan = GridPlan::new(self.loaded, self.options.skip);
+        if let Some(reason) = plan.skipped() {
+            for stage in stages_of(Chain::Rays) {
+                let reason = reason.clone();
+                self.rows.skip(stage.name, "spec", &label, Class::Exact, reason);
+            }
+            return Ok(());
+        }
+        let spec = self.grid_spec()?;
+        let leg = Leg {
+            adapter,
+            path,
+            spec: &spec,
+            capacity: self.loaded.file.grid.unwrap_or_default().capacity,
+        };
+        if let Err(error) = leg.run(&mut self.rows) {
+            self.grid_refused(&label, &error);
+        }
+        Ok(())
+    }
+
+    /// What kept a device from a result. All its buffers are sized by the scene: a limit is a
+    /// reason to skip.
+    fn grid_refused(&mut self, label: &str, error: &GpuError) {
+        let reason = error.to_string();
+        let cause = match error {
+            GpuError::Limit { .. } | GpuError::Memory { .. } => {
+                self.rows.skip("leg", "spec", label, Class::Exact, reason);
+                return;
+            }
+            GpuError::Lost { .. } => Some(Cause::DeviceLost),
+            GpuError::Endless { .. } => Some(Cause::Cycle),
+            _ => None,
+        };
+        self.rows.fail("leg", "spec", label, cause, reason);
+    }
+}
