@@ -16,6 +16,7 @@
 //! | `grid::cells` | which cells list a triangle; linked lists; bricks; boundaries; limits |
 //! | `grid::kernel` | no arithmetic that WGSL allows leads past what a ray meets |
 //! | `grid::meshes` | no ray leaves a closed mesh unseen |
+//! | `grid::adapters` | random grids and rays give the spec's lists and answers on every adapter |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:

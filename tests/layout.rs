@@ -2,22 +2,23 @@
 //! workgroup sizes, bindings. Every program is linked and taken apart by naga, in the
 //! baseline form and in the one with native 64-bit integers.
 
+#[path = "layout/constants.rs"]
+mod constants;
+
 use std::mem::{offset_of, size_of};
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{
-    AddressSpace, BinaryOperator, Expression, Function, Literal, Module, ScalarKind, ShaderStage,
+    AddressSpace, BinaryOperator, Expression, Function, Module, ScalarKind, ShaderStage,
     StorageAccess, TypeInner,
 };
-use triptych_gpu::abuffer::{PROGRESS, STEPS};
+use triptych_gpu::abuffer::PROGRESS;
 use triptych_gpu::frame::{Frame, WORKGROUP};
-use triptych_gpu::raster::SATURATED;
+use triptych_gpu::grid::Cells;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
-use triptych_spec::abuffer::{EOL, NOTHING};
-use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
 
 /// The files with entry points.
-const ROOTS: [&str; 5] = ["abuffer", "ceiling", "nearest", "raster", "vertex"];
+const ROOTS: [&str; 6] = ["abuffer", "ceiling", "grid", "nearest", "raster", "vertex"];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
 const STORAGE_BUFFERS: usize = 8;
@@ -47,17 +48,6 @@ fn programs() -> Vec<Root> {
         .iter()
         .flat_map(|root| [(*root, false), (*root, true)]);
     all.map(link).collect()
-}
-
-/// A module constant; all that cross over are integers of 32 bits.
-fn constant(module: &Module, name: &str) -> Option<i64> {
-    let named = |c: &naga::Constant| c.name.as_deref() == Some(name);
-    let (_, constant) = module.constants.iter().find(|(_, c)| named(c))?;
-    match module.global_expressions[constant.init] {
-        Expression::Literal(Literal::U32(v)) => Some(v.into()),
-        Expression::Literal(Literal::I32(v)) => Some(v.into()),
-        ref other => panic!("{name} is no integer: {other:?}"),
-    }
 }
 
 fn layout(module: &Module, name: &str) -> Option<Layout> {
@@ -101,25 +91,6 @@ fn everywhere<T: PartialEq + std::fmt::Debug>(
 }
 
 #[test]
-fn constants_are_those_of_rust() {
-    let steps = i64::try_from(STEPS).expect("a word");
-    let corners = i64::try_from(CORNERS_MAX).expect("a word");
-    let constants = [
-        ("EOL", i64::from(EOL)),
-        ("NOTHING", i64::from(NOTHING)),
-        ("GUARD", i64::from(GUARD)),
-        ("SATURATED", i64::from(SATURATED)),
-        ("WORKGROUP", i64::from(WORKGROUP)),
-        ("STEPS", steps),
-        ("CORNERS_MAX", corners),
-        ("DEPTH_ONE", i64::from(DEPTH_ONE)),
-    ];
-    for (name, value) in constants {
-        everywhere(name, &value, constant);
-    }
-}
-
-#[test]
 fn the_frame_is_that_of_rust() {
     macro_rules! fields {
         ($($field:ident)*) => {
@@ -136,6 +107,11 @@ fn the_frame_is_that_of_rust() {
         .map(|(name, at)| (name, word(at)))
         .collect();
     everywhere("Frame", &(fields, word(size_of::<Frame>())), layout);
+    let cells = words(&[
+        "x", "y", "z", "overlap", "items", "first", "capacity", "run",
+    ]);
+    assert_eq!(size_of::<Cells>(), 32, "eight words");
+    everywhere("Cells", &cells, layout);
 }
 
 #[test]
@@ -146,6 +122,16 @@ fn records_are_the_words_that_the_host_reads() {
         &words(&["pixel", "prim", "key", "mask"]),
         layout,
     );
+    everywhere("Entry", &words(&["prim", "next"]), layout);
+    everywhere("Hit", &words(&["prim", "time", "state", "at"]), layout);
+    let ray = [
+        ("origin", 0),
+        ("segment", 12),
+        ("direction", 16),
+        ("unused", 28),
+    ];
+    let ray = ray.map(|(name, at)| (name.to_owned(), at)).to_vec();
+    everywhere("Ray", &(ray, 32), layout);
     everywhere("Vertex", &words(&["x", "y", "z", "instance"]), layout);
     let size = |module: &Module, name: &str| Some(u64::from(layout(module, name)?.1));
     everywhere("Progress", &PROGRESS, size);

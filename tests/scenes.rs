@@ -24,7 +24,7 @@ use devices::Devices;
 use libtest_mimic::{Arguments, Failed, Trial};
 use triptych_harness::corpus::{self, Entry};
 use triptych_harness::json;
-use triptych_harness::registry::stages;
+use triptych_harness::registry::{Chain, stages_of};
 use triptych_harness::replay::gpu::Adapter;
 use triptych_harness::replay::{Extent, Options, Outcome, replay};
 use triptych_harness::row::{Row, Verdict};
@@ -149,7 +149,14 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
             .collect::<Vec<_>>()
     });
     // Compared or skipped for a reason: every stage says what became of it.
-    for (adapter, stage) in adapters.iter().flat_map(|a| stages().map(move |s| (a, s))) {
+    let chain = match outcome.rows.iter().any(|r| r.family == "grid") {
+        true => Chain::Rays,
+        false => Chain::Frame,
+    };
+    let all = adapters
+        .iter()
+        .flat_map(|a| stages_of(chain).map(move |s| (a, s)));
+    for (adapter, stage) in all {
         let leg = format!("gpu@{}/compute", adapter.gpu.name);
         let row = |r: &Row| r.b == leg && r.stage == stage.name;
         if !outcome.rows.iter().any(row) {
@@ -162,6 +169,9 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
         if rows.is_empty() || (!compared && rows.iter().any(|r| r.skipped.is_none())) {
             wrong.push(format!("nothing was compared with {leg}, for no reason"));
         }
+    }
+    if chain == Chain::Rays {
+        return wrong;
     }
     // Embree is asked twice.
     if outcome.rows.iter().all(|r| r.stage != "world") {

@@ -25,7 +25,7 @@ pub const STEPS: u32 = 16_384;
 /// A ray that has not started, and one that is done. Twins in `search.wgsl`.
 pub const FRESH: u32 = u32::MAX;
 /// See [`FRESH`].
-pub const DONE: u32 = u32::MAX - 1;
+pub const TRACED: u32 = u32::MAX - 1;
 
 /// What every kernel is told. Twin: `Cells` in `cells.wgsl`.
 #[repr(C)]
@@ -78,7 +78,7 @@ pub struct Hit {
     pub prim: u32,
     /// When, if anything was met.
     pub time: f32,
-    /// [`DONE`], for rays that have been traced.
+    /// [`TRACED`], for rays that have been traced.
     pub state: u32,
     /// Where in a list the search stood.
     pub at: u32,

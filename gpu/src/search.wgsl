@@ -7,7 +7,7 @@
 const EOL: u32 = 0xffffffffu;
 const NOTHING: u32 = 0xffffffffu;
 const FRESH: u32 = 0xffffffffu;
-const DONE: u32 = 0xfffffffeu;
+const TRACED: u32 = 0xfffffffeu;
 
 @group(0) @binding(11) var<storage, read> rays: array<Ray>;
 
@@ -16,7 +16,7 @@ struct Hit {
     // The triangle, or NOTHING.
     prim: u32,
     time: f32,
-    // FRESH, DONE, or the cell, ten bits an axis.
+    // FRESH, TRACED, or the cell, ten bits an axis.
     state: u32,
     // Next entry of the cell's list.
     at: u32,
@@ -37,13 +37,13 @@ fn unpacked(word: u32) -> vec3<i32> {
 // brick, or to the next triangle.
 fn traced(ray: Ray, given: Hit, any: bool) -> Hit {
     var hit = given;
-    if hit.state == DONE {
+    if hit.state == TRACED {
         return hit;
     }
     let way = way(ray);
     var cell = unpacked(hit.state);
     if hit.state == FRESH {
-        hit = Hit(NOTHING, NEVER, DONE, EOL);
+        hit = Hit(NOTHING, NEVER, TRACED, EOL);
         cell = entrance(ray, way);
     }
     var march = March(cell, exits(way, max(cell, vec3(0))));
@@ -77,7 +77,7 @@ fn traced(ray: Ray, given: Hit, any: bool) -> Hit {
                 hit.prim = prim;
                 hit.time = meeting.time;
                 if any {
-                    hit.state = DONE;
+                    hit.state = TRACED;
                     return hit;
                 }
             }
@@ -93,7 +93,7 @@ fn traced(ray: Ray, given: Hit, any: bool) -> Hit {
         march = stepped(way, march);
     }
     if !inside(march.cell) {
-        hit.state = DONE;
+        hit.state = TRACED;
         return hit;
     }
     hit.state = packed(march.cell);

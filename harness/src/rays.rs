@@ -90,7 +90,11 @@ impl<'a> Source<'a> {
             Kind::Aimed => {
                 let [a, b, c] = self.triangle();
                 let (u, v) = (self.random.unit(), self.random.unit());
-                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let (u, v) = if u + v > 1.0 {
+                    (1.0 - u, 1.0 - v)
+                } else {
+                    (u, v)
+                };
                 let on = [0, 1, 2].map(|i| {
                     let along = f64::from(b[i] - a[i]) * u + f64::from(c[i] - a[i]) * v;
                     a[i] + round(along)
@@ -260,7 +264,10 @@ mod tests {
             let [x, ..] = grid.axes.each_ref().map(Axis::boundaries);
             x.contains(&ray.origin[0])
         };
-        assert!(of(5).iter().filter(boundary).count() > 100, "from boundaries");
+        assert!(
+            of(5).iter().filter(boundary).count() > 100,
+            "from boundaries"
+        );
         assert_eq!(draw(&blockers, &grid, 3, &counts).0, rays, "the same again");
         assert_ne!(draw(&blockers, &grid, 4, &counts).0, rays, "another seed");
     }

@@ -86,7 +86,10 @@ mod tests {
 
     fn facts(fragments: u64) -> Facts {
         Facts {
-            counts: vec![("size", "8 x 4".into()), ("fragments", fragments.to_string())],
+            counts: vec![
+                ("size", "8 x 4".into()),
+                ("fragments", fragments.to_string()),
+            ],
             runs: vec!["build".into()],
             hashes: BTreeMap::from([("vertex", "0123456789abcdef".into())]),
         }

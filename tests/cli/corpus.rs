@@ -32,7 +32,7 @@ fn plan_says_what_runs_and_why() {
     let mut lines = ran.stdout.lines();
     assert_eq!(lines.next(), Some("raster/quads: 4 triangles"));
     let passes: Vec<Vec<&str>> = lines.map(|l| l.split_whitespace().collect()).collect();
-    let stages = triptych_harness::registry::stages();
+    let stages = triptych_harness::registry::stages_of(triptych_harness::registry::Chain::Frame);
     for (pass, stage) in passes.iter().zip(stages) {
         let verb = match stage.name {
             "cover" | "opaque" => "skip",

@@ -133,9 +133,10 @@ fn options_with_a_mistake() {
     }
     // The GPU may take over at every stage of the registry.
     let ran = place.run(&["replay", "--gpu-from", "nonsuch"]);
-    let stages: Vec<&str> = triptych_harness::registry::stages()
-        .map(|s| s.name)
-        .collect();
+    let stages: Vec<&str> =
+        triptych_harness::registry::stages_of(triptych_harness::registry::Chain::Frame)
+            .map(|s| s.name)
+            .collect();
     let listed = format!("[possible values: {}]", stages.join(", "));
     assert!(
         ran.stderr.contains(&listed),

@@ -1,5 +1,7 @@
 //! Grids and rays: nothing that a ray meets is missed, whatever the cells.
 
+#[path = "grid/adapters.rs"]
+mod adapters;
 #[path = "grid/cells.rs"]
 mod cells;
 #[path = "grid/kernel.rs"]

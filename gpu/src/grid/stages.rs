@@ -7,7 +7,7 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 
 use super::device::Device;
-use super::{Cells, DONE, Entry, FRESH, Hit, Linked, Packed, SHORT, STEPS, TILE};
+use super::{Cells, Entry, FRESH, Hit, Linked, Packed, SHORT, STEPS, TILE, TRACED};
 use crate::error::GpuError;
 
 /// Rays of one dispatch: 32 bytes each, within 128 MiB.
@@ -229,7 +229,7 @@ impl<'g> Stages<'g> {
             }
         }
         let hits: Vec<Hit> = gpu.read(&hits, packed.len())?;
-        match hits.iter().all(|hit| hit.state == DONE) {
+        match hits.iter().all(|hit| hit.state == TRACED) {
             true => Ok(hits),
             false => Err(GpuError::Endless {
                 adapter: gpu.name.clone(),

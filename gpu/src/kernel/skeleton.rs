@@ -38,17 +38,10 @@ pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
     for variable in &variables {
         declare(&mut text, &program.module, variable);
     }
-    let (pixels, per_pixel) = ("frame.width * frame.rows", ["sort", "resolve"]);
-    let items = if per_pixel.contains(&stage.name) {
-        pixels
-    } else {
-        "frame.items"
-    };
     let attributes = format!("@compute @workgroup_size({WORKGROUP})");
-    let guard = format!("    if id.x >= {items} {{\n        return;\n    }}\n");
+    let (arguments, guard) = invocation(stage);
     for entry in stage.compute {
-        let arguments = "@builtin(global_invocation_id) id: vec3<u32>";
-        function(&mut text, &attributes, entry, arguments, &guard);
+        function(&mut text, &attributes, entry, &arguments, &guard);
     }
     for entry in stage.fragment {
         let arguments = "@builtin(position) position: vec4<f32>, \
@@ -56,6 +49,22 @@ pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
         function(&mut text, "@fragment", entry, arguments, "");
     }
     Ok(text)
+}
+
+/// What a compute entry point is given, and how it leaves out what is too many.
+fn invocation(stage: &Stage) -> (String, String) {
+    let id = "@builtin(global_invocation_id) id: vec3<u32>";
+    let guard =
+        |i: &str, items: &str| format!("    if {i} >= {items} {{\n        return;\n    }}\n");
+    match (stage.file, stage.name) {
+        ("grid", _) => {
+            let groups = format!("{id}, @builtin(num_workgroups) groups: vec3<u32>");
+            let item = format!("    let i = id.x + id.y * groups.x * {WORKGROUP}u;\n");
+            (groups, item + &guard("i", "cells.items"))
+        }
+        (_, "sort" | "resolve") => (id.to_owned(), guard("id.x", "frame.width * frame.rows")),
+        _ => (id.to_owned(), guard("id.x", "frame.items")),
+    }
 }
 
 /// Variables of all the stage's entry points, in order of binding.

@@ -22,7 +22,7 @@ const ROW: &str = "Compute: item `i` below frame.items is one row of one triangl
     rasteriser calls it for every covered pixel, with the triangle at location 0.";
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 8] = [
+pub const STAGES: [Stage; 13] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -90,6 +90,56 @@ pub const STAGES: [Stage; 8] = [
         contract: "Blends the sorted list of pixel i over the opaque surface or the background \
             into picture[i], in front of the opaque key only. Sets progress.unfinished if it \
             needs another dispatch.",
+    },
+    Stage {
+        name: "count",
+        file: "grid",
+        compute: &["count"],
+        fragment: &[],
+        contract: "Adds 1 to counts of every cell that lists triangle i of cells.items: those \
+            that its box touches when widened, from number cells.first on; more than STEPS of \
+            them set unfinished, for a dispatch that begins STEPS later. i counts invocations, \
+            rows of num_workgroups.x workgroups.",
+    },
+    Stage {
+        name: "scan",
+        file: "grid",
+        compute: &["scan_tiles", "scan_sums", "scan"],
+        fragment: &[],
+        contract: "offsets[c] is the sum of all counts before cell c, offsets[cells.items] of \
+            all, or 0xffffffff where 32 bits cannot hold it. First pass: sums of tiles of 1,024 \
+            cells. Second pass, one workgroup: sums of all tiles before. Third: offsets.",
+    },
+    Stage {
+        name: "fill",
+        file: "grid",
+        compute: &["fill", "fill_sort", "fill_merge"],
+        fragment: &[],
+        contract: "First pass: triangle i into the run of every cell that lists it, unless its \
+            address is beyond cells.capacity; counts may be used up. Second: the list of cell \
+            i in order, or its length in unfinished if it exceeds 64. Third, for each power \
+            of two from 1 in cells.run: entry i of a longer list to merged, where two runs in \
+            order become one.",
+    },
+    Stage {
+        name: "link",
+        file: "grid",
+        compute: &["link"],
+        fragment: &[],
+        contract: "Puts triangle i at the head of the linked list of every cell that lists it, \
+            as for count. The counter counts attempts, also those beyond cells.capacity, which \
+            must touch neither heads nor entries. Heads start as 0xffffffff, which also ends a \
+            list.",
+    },
+    Stage {
+        name: "trace",
+        file: "grid",
+        compute: &["trace_bricks", "trace_any", "trace_closest"],
+        fragment: &[],
+        contract: "First pass: the 64 bits of brick i, one for each cell with a list. Others: \
+            what ray i meets, any triangle or the nearest with its time, in hits[i]; its state \
+            starts as 0xffffffff and ends as 0xfffffffe. Sets unfinished if it needs another \
+            dispatch, before which hits are kept.",
     },
 ];
 

@@ -9,9 +9,9 @@ use triptych_spec::abuffer::NOTHING;
 
 use super::grid::GridRun;
 use super::spec::SpecRun;
-use crate::rays::Kind;
 use crate::dump::Meta;
 use crate::plan::Pass;
+use crate::rays::Kind;
 use crate::scene::Loaded;
 
 /// Canonical facts of a scene at 8 sub-pixel bits.
@@ -49,7 +49,10 @@ impl Facts {
         let visible = opaque.key.iter().chain(&opaque.prim).copied();
         Self {
             counts: vec![
-                ("size", format!("{} x {}", primitives.size.width, primitives.size.height)),
+                (
+                    "size",
+                    format!("{} x {}", primitives.size.width, primitives.size.height),
+                ),
                 ("triangles", loaded.stats.triangles.to_string()),
                 ("degenerate", loaded.stats.degenerate.to_string()),
                 ("prims", primitives.prims.len().to_string()),
@@ -87,10 +90,16 @@ impl Facts {
         let mut start = 0;
         for (kind, end) in Kind::ALL.into_iter().zip(spec.ends) {
             let met = spec.answers[start..end].iter().flatten().count();
-            counts.push((kind.name(), format!("{met} of {} rays blocked", end - start)));
+            counts.push((
+                kind.name(),
+                format!("{met} of {} rays blocked", end - start),
+            ));
             start = end;
         }
-        let boundaries = grid.axes.iter().flat_map(|axis| axis.boundaries().iter().copied());
+        let boundaries = grid
+            .axes
+            .iter()
+            .flat_map(|axis| axis.boundaries().iter().copied());
         let corners = spec.blockers.vertices.iter().flatten().copied();
         let words = |i: i32| i.cast_unsigned();
         let lists = grid.offsets.iter().chain(&grid.prims).copied();

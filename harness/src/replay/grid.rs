@@ -63,7 +63,8 @@ impl Run<'_> {
         if let Some(reason) = plan.skipped() {
             for stage in stages_of(Chain::Rays) {
                 let reason = reason.clone();
-                self.rows.skip(stage.name, "spec", &label, Class::Exact, reason);
+                self.rows
+                    .skip(stage.name, "spec", &label, Class::Exact, reason);
             }
             return Ok(());
         }

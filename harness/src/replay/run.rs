@@ -6,8 +6,8 @@ use std::rc::Rc;
 use triptych_spec::vertex::{self, SUBPIXEL_BITS};
 
 use super::facts::Facts;
-use super::grid::GridRun;
 use super::gpu::Adapter;
+use super::grid::GridRun;
 use super::rows::Rows;
 use super::spec::{SpecRun, Times, timed};
 use super::worst::{Errors, Worst};

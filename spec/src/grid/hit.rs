@@ -9,11 +9,11 @@ use crate::bound::{Bounded, U};
 /// the sum norm of the first times the largest components of the others. A cross product
 /// and a dot product of exact numbers meet five roundings of terms that are twice that size
 /// together. Twin: `VOLUME_ERROR` in `gpu/src/volume.wgsl`, where 12 `U` is derived.
-const VOLUME_ERROR: f64 = 12.0 * U;
+pub const VOLUME_ERROR: f64 = 12.0 * U;
 
 /// By how much a triple product must exceed its error for a kernel to divide by it, or it
 /// is worked out in integers. Twin: `FOR_TIME` in `gpu/src/meet.wgsl`.
-const FOR_TIME: f64 = 1024.0;
+pub const FOR_TIME: f64 = 1024.0;
 
 /// When a ray meets a triangle, edges and corners included.
 ///

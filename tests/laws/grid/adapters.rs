@@ -23,20 +23,36 @@ fn devices() -> &'static [(Gpu, Vec<Kernels>)] {
     DEVICES.get_or_init(|| {
         let open = |adapter: wgpu::Adapter| {
             let gpu = Gpu::open(&adapter).expect("a device");
-            let natives = [false, true].into_iter().take(1 + usize::from(gpu.has_int64()));
+            let natives = [false, true]
+                .into_iter()
+                .take(1 + usize::from(gpu.has_int64()));
             let kernels = natives.map(|native| Kernels::new(Sources::shipped(native)));
             let kernels = kernels.collect();
             (gpu, kernels)
         };
-        let all: Vec<_> = adapters(wgpu::Backends::VULKAN).into_iter().map(open).collect();
-        assert!(!all.is_empty(), "no adapter; `triptych doctor` says what is missing");
+        let all: Vec<_> = adapters(wgpu::Backends::VULKAN)
+            .into_iter()
+            .map(open)
+            .collect();
+        assert!(
+            !all.is_empty(),
+            "no adapter; `triptych doctor` says what is missing"
+        );
         all
     })
 }
 
 /// Each stage from the spec's input.
-fn agrees(stages: &mut Stages, blockers: &Blockers, grid: &Grid, rays: &[Ray]) -> Result<(), TestCaseError> {
-    let cells = Cells { axes: &grid.axes, membership: Membership::Box };
+fn agrees(
+    stages: &mut Stages,
+    blockers: &Blockers,
+    grid: &Grid,
+    rays: &[Ray],
+) -> Result<(), TestCaseError> {
+    let cells = Cells {
+        axes: &grid.axes,
+        membership: Membership::Box,
+    };
     let counts = count(blockers, &cells);
     let entries = u32::try_from(grid.prims.len()).unwrap();
     prop_assert_eq!(stages.count().unwrap(), &counts[..]);
@@ -54,7 +70,10 @@ fn agrees(stages: &mut Stages, blockers: &Blockers, grid: &Grid, rays: &[Ray]) -
             prop_assert!(list.len() <= linked.entries.len(), "a cycle");
         }
         list.sort_unstable();
-        prop_assert_eq!(&list[..], &grid.prims[grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize]);
+        prop_assert_eq!(
+            &list[..],
+            &grid.prims[grid.offsets[cell] as usize..grid.offsets[cell + 1] as usize]
+        );
     }
     let any = stages.trace(rays, Query::Any).unwrap();
     let nearest = stages.trace(rays, Query::Closest).unwrap();
@@ -65,7 +84,12 @@ fn agrees(stages: &mut Stages, blockers: &Blockers, grid: &Grid, rays: &[Ray]) -
         if let Some(expected) = expected {
             prop_assert!(crossing(ray, blockers.corners(any.prim)).is_some());
             let seen = timed(ray, blockers.corners(nearest.prim)).expect("it is met");
-            prop_assert!(seen.admits(f64::from(nearest.time)), "{:?}: {:?}", nearest, seen);
+            prop_assert!(
+                seen.admits(f64::from(nearest.time)),
+                "{:?}: {:?}",
+                nearest,
+                seen
+            );
             let first = timed(ray, blockers.corners(expected.prim)).expect("it is met");
             prop_assert!(seen.value - seen.bound <= first.value + first.bound);
         }

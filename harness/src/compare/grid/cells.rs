@@ -27,7 +27,9 @@ fn numbers(unit: &'static str, cause: Cause, spec: &[u32], seen: &[u32]) -> Judg
     }
     for (at, (spec, seen)) in spec.iter().zip(seen).enumerate() {
         if spec != seen {
-            judgement.differs(cause, None, || format!("number {at} is {seen}, must be {spec}"));
+            judgement.differs(cause, None, || {
+                format!("number {at} is {seen}, must be {spec}")
+            });
         }
     }
     judgement
@@ -75,7 +77,11 @@ fn lists(cell: usize, spec: &[u32], seen: &[u32]) -> String {
         let first: Vec<String> = list.iter().take(8).map(u32::to_string).collect();
         format!("[{}{more}]", first.join(", "))
     };
-    format!("cell {cell} lists {}, must list {}", shown(seen), shown(spec))
+    format!(
+        "cell {cell} lists {}, must list {}",
+        shown(seen),
+        shown(spec)
+    )
 }
 
 /// Lists of which a kernel may hold more than the spec, where it cannot prove that a triangle
@@ -146,7 +152,11 @@ pub fn overflowed(spec: Runs<'_>, seen: &[u32]) -> Judgement {
         let foreign = stored.iter().any(|prim| list.binary_search(prim).is_err());
         let twice = stored.windows(2).any(|pair| pair[0] == pair[1]);
         if foreign || twice {
-            let cause = if foreign { Cause::Overflow } else { Cause::Duplicate };
+            let cause = if foreign {
+                Cause::Overflow
+            } else {
+                Cause::Duplicate
+            };
             judgement.differs(cause, None, || lists(cell, list, &stored));
         }
     }

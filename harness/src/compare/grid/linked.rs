@@ -26,7 +26,10 @@ pub fn linked(least: Runs<'_>, most: Runs<'_>, seen: &Linked) -> Judgement {
     if !(bounds[0]..=bounds[1]).contains(&u64::from(seen.attempts)) {
         judgement.differs(Cause::Overflow, None, || {
             let [least, most] = bounds;
-            format!("the counter is {}, must be {least} to {most}", seen.attempts)
+            format!(
+                "the counter is {}, must be {least} to {most}",
+                seen.attempts
+            )
         });
     }
     let stored = needed.min(capacity);

@@ -53,7 +53,9 @@ pub fn any(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
     let answers = asked.rays.iter().zip(asked.answers).zip(seen);
     for (at, ((ray, answer), hit)) in answers.enumerate() {
         if let Some(wrong) = asked.unmet(ray, *answer, hit) {
-            judgement.differs(Cause::Coverage, None, || format!("ray {at}, {ray:?}, {wrong}"));
+            judgement.differs(Cause::Coverage, None, || {
+                format!("ray {at}, {ray:?}, {wrong}")
+            });
         }
     }
     let blocked = asked.answers.iter().flatten().count();
@@ -70,7 +72,9 @@ pub fn closest(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
     let answers = asked.rays.iter().zip(asked.answers).zip(seen);
     for (at, ((ray, answer), hit)) in answers.enumerate() {
         if let Some(wrong) = asked.unmet(ray, *answer, hit) {
-            judgement.differs(Cause::Coverage, None, || format!("ray {at}, {ray:?}, {wrong}"));
+            judgement.differs(Cause::Coverage, None, || {
+                format!("ray {at}, {ray:?}, {wrong}")
+            });
             continue;
         }
         let Some(first) = answer else { continue };
@@ -79,7 +83,10 @@ pub fn closest(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
         let error = (seen - time.value).abs();
         if !time.admits(seen) {
             judgement.differs(Cause::Interval, None, || {
-                format!("ray {at} meets {} at {seen:e}, must at {:e}", hit.prim, time.value)
+                format!(
+                    "ray {at} meets {} at {seen:e}, must at {:e}",
+                    hit.prim, time.value
+                )
             });
             continue;
         }
@@ -89,7 +96,10 @@ pub fn closest(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
         if time.value - time.bound > nearest.value + nearest.bound {
             judgement.differs(Cause::DepthKey, None, || {
                 let (other, at_first) = (hit.prim, nearest.value);
-                format!("ray {at} meets {other} at {seen:e}, and {} at {at_first:e}", first.prim)
+                format!(
+                    "ray {at} meets {other} at {seen:e}, and {} at {at_first:e}",
+                    first.prim
+                )
             });
         } else if hit.prim != first.prim {
             judgement.admitted += 1;

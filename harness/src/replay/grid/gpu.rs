@@ -38,7 +38,12 @@ impl Leg<'_> {
             let judgement = self.traced(&mut stages, query)?;
             let times = spec.times.trace;
             let seen = self.seen((), &stages);
-            rows.add("trace", &self.spec.map(|_| ()).taking(times), &seen, judgement);
+            rows.add(
+                "trace",
+                &self.spec.map(|_| ()).taking(times),
+                &seen,
+                judgement,
+            );
         }
         self.end_to_end(rows)
     }
@@ -188,11 +193,9 @@ impl Leg<'_> {
         let offsets = stages.scan()?;
         let entries = offsets.last().copied().unwrap_or(0);
         stages.fill(entries, entries)?;
-        let any = self.traced(&mut stages, Query::Any)?;
-        let closest = self.traced(&mut stages, Query::Closest)?;
         let judgement = Judgement {
-            note: "any and closest hits from its own lists".to_owned(),
-            ..Judgement::sum([closest, any])
+            note: "closest hits from its own lists".to_owned(),
+            ..self.traced(&mut stages, Query::Closest)?
         };
         let spec = self.spec.map(|_| ());
         let seen = Observed::<Gpu, _>::new(self.seen((), &stages).label, ());

@@ -1,0 +1,62 @@
+//! Numbers that are written down twice.
+
+use naga::{Expression, Literal, Module};
+use triptych_gpu::abuffer::STEPS;
+use triptych_gpu::frame::WORKGROUP;
+use triptych_gpu::grid::{FRESH, SHORT, TILE, TRACED};
+use triptych_gpu::raster::SATURATED;
+use triptych_spec::abuffer::{EOL, NOTHING};
+use triptych_spec::grid::axis::WIDENED;
+use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
+use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
+
+use super::everywhere;
+
+/// A module constant; all that cross over are integers of 32 bits.
+fn constant(module: &Module, name: &str) -> Option<i64> {
+    let named = |c: &naga::Constant| c.name.as_deref() == Some(name);
+    let (_, constant) = module.constants.iter().find(|(_, c)| named(c))?;
+    match module.global_expressions[constant.init] {
+        Expression::Literal(Literal::U32(v)) => Some(v.into()),
+        Expression::Literal(Literal::I32(v)) => Some(v.into()),
+        ref other => panic!("{name} is no integer: {other:?}"),
+    }
+}
+
+#[test]
+fn constants_are_those_of_rust() {
+    let steps = i64::try_from(STEPS).expect("a word");
+    let corners = i64::try_from(CORNERS_MAX).expect("a word");
+    let constants = [
+        ("EOL", i64::from(EOL)),
+        ("NOTHING", i64::from(NOTHING)),
+        ("GUARD", i64::from(GUARD)),
+        ("SATURATED", i64::from(SATURATED)),
+        ("WORKGROUP", i64::from(WORKGROUP)),
+        ("STEPS", steps),
+        ("CORNERS_MAX", corners),
+        ("DEPTH_ONE", i64::from(DEPTH_ONE)),
+        ("TILE", i64::from(TILE)),
+        ("SHORT", i64::from(SHORT)),
+        ("FRESH", i64::from(FRESH)),
+        ("TRACED", i64::from(TRACED)),
+    ];
+    for (name, value) in constants {
+        everywhere(name, &value, constant);
+    }
+}
+
+#[test]
+fn thresholds_are_those_of_the_spec() {
+    let real = |module: &Module, name: &str| {
+        let named = |c: &naga::Constant| c.name.as_deref() == Some(name);
+        let (_, constant) = module.constants.iter().find(|(_, c)| named(c))?;
+        match module.global_expressions[constant.init] {
+            Expression::Literal(Literal::F32(v)) => Some(f64::from(v)),
+            ref other => panic!("{name} is no number: {other:?}"),
+        }
+    };
+    everywhere("WIDENED", &f64::from(WIDENED), real);
+    everywhere("VOLUME_ERROR", &VOLUME_ERROR, real);
+    everywhere("FOR_TIME", &FOR_TIME, real);
+}
