@@ -107,11 +107,13 @@ fn the_frame_is_that_of_rust() {
         .map(|(name, at)| (name, word(at)))
         .collect();
     everywhere("Frame", &(fields, word(size_of::<Frame>())), layout);
-    let cells = words(&[
-        "x", "y", "z", "overlap", "items", "first", "capacity", "run",
-    ]);
-    assert_eq!(size_of::<Cells>(), 32, "eight words");
-    everywhere("Cells", &cells, layout);
+    let names = [
+        "x", "y", "z", "overlap", "items", "first", "capacity", "run", "any",
+    ];
+    let (mut cells, _) = words(&names);
+    cells.push(("unused".to_owned(), 48));
+    assert_eq!(size_of::<Cells>(), 64, "a block of 16 words");
+    everywhere("Cells", &(cells, 64), layout);
 }
 
 #[test]

@@ -16,6 +16,9 @@ struct Cells {
     capacity: u32,
     // Entries that are in order already, in a row.
     run: u32,
+    // 1 if the first triangle that blocks a ray ends its search, 0 for the nearest.
+    any: u32,
+    unused: vec3<u32>,
 }
 
 @group(0) @binding(0) var<uniform> cells: Cells;

@@ -47,6 +47,10 @@ pub struct Cells {
     pub capacity: u32,
     /// Entries that are in order already, in a row.
     pub run: u32,
+    /// 1 if the first triangle that blocks a ray ends its search, 0 for the nearest.
+    pub any: u32,
+    /// Up to a multiple of 16 bytes.
+    pub unused: [u32; 7],
 }
 
 /// An entry of a linked list. Twin: `Entry` in `grid.wgsl`.

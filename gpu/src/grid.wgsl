@@ -214,20 +214,11 @@ fn trace_bricks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     bricks[2u * brick + 1u] = words.y;
 }
 
-// Any triangle that blocks the ray; the first to be found ends the search.
+// What a ray meets.
 @compute @workgroup_size(64)
-fn trace_any(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn trace(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = item(id, groups);
     if i < cells.items {
-        hits[i] = traced(rays[i], hits[i], true);
-    }
-}
-
-// The nearest triangle.
-@compute @workgroup_size(64)
-fn trace_closest(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = item(id, groups);
-    if i < cells.items {
-        hits[i] = traced(rays[i], hits[i], false);
+        hits[i] = traced(rays[i], hits[i]);
     }
 }

@@ -35,7 +35,7 @@ fn unpacked(word: u32) -> vec3<i32> {
 
 // A ray's search from where it stands, for at most STEPS steps: to the next cell, over an empty
 // brick, or to the next triangle.
-fn traced(ray: Ray, given: Hit, any: bool) -> Hit {
+fn traced(ray: Ray, given: Hit) -> Hit {
     var hit = given;
     if hit.state == TRACED {
         return hit;
@@ -76,7 +76,7 @@ fn traced(ray: Ray, given: Hit, any: bool) -> Hit {
             if meeting.met && nearer(meeting.time, prim, hit) {
                 hit.prim = prim;
                 hit.time = meeting.time;
-                if any {
+                if cells.any == 1u {
                     hit.state = TRACED;
                     return hit;
                 }

@@ -104,7 +104,7 @@ pub const FAMILIES: &[Family] = &[
             in_cells("scan", &["scan_tiles", "scan_sums", "scan"]),
             in_cells("fill", &["fill", "fill_sort", "fill_merge"]),
             in_cells("link", &["link"]),
-            in_cells("trace", &["trace_bricks", "trace_any", "trace_closest"]),
+            in_cells("trace", &["trace_bricks", "trace"]),
         ],
         no_corpus: None,
     },

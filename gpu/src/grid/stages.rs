@@ -118,7 +118,8 @@ impl<'g> Stages<'g> {
         let buffers = [("offsets", &self.offsets), ("prims", &self.prims)];
         let total = self.device.total();
         self.time += self.device.each("fill_sort", runs(total, 0), &buffers)?;
-        let longest = self.device.take_unfinished()?;
+        // No list is longer than all are together, whatever damaged offsets say.
+        let longest = self.device.take_unfinished()?.min(entries);
         if longest <= SHORT {
             return Ok(());
         }
@@ -214,16 +215,13 @@ impl<'g> Stages<'g> {
             ("rays", &rays),
             ("hits", &hits),
         ];
-        let entry = match query {
-            Query::Any => "trace_any",
-            Query::Closest => "trace_closest",
-        };
         let cells = Cells {
             items,
+            any: (query == Query::Any).into(),
             ..self.device.cells
         };
         for _ in 0..self.rounds() {
-            self.time += self.device.each(entry, cells, &buffers)?;
+            self.time += self.device.each("trace", cells, &buffers)?;
             if self.device.take_unfinished()? == 0 {
                 break;
             }

@@ -134,10 +134,10 @@ pub const STAGES: [Stage; 13] = [
     Stage {
         name: "trace",
         file: "grid",
-        compute: &["trace_bricks", "trace_any", "trace_closest"],
+        compute: &["trace_bricks", "trace"],
         fragment: &[],
-        contract: "First pass: the 64 bits of brick i, one for each cell with a list. Others: \
-            what ray i meets, any triangle or the nearest with its time, in hits[i]; its state \
+        contract: "First pass: the 64 bits of brick i, one for each cell with a list. Second: \
+            what ray i meets, any triangle if cells.any is 1, or the nearest with its time, in hits[i]; its state \
             starts as 0xffffffff and ends as 0xfffffffe. Sets unfinished if it needs another \
             dispatch, before which hits are kept.",
     },

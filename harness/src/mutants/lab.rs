@@ -15,6 +15,7 @@ use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::Plan;
 use crate::replay::gpu::{Adapter, From, GpuLeg};
+use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::rows::Rows;
 use crate::replay::spec::SpecRun;
 use crate::replay::vertex::VertexLeg;
@@ -34,6 +35,8 @@ struct Ground {
     plan: Plan,
     /// By sub-pixel bits.
     specs: BTreeMap<u32, Observed<Spec, SpecRun>>,
+    /// Of a scene with a grid.
+    grid: Option<Observed<Spec, GridRun>>,
     /// Where the shipped kernels were seen to agree.
     sound: BTreeSet<(String, Setting)>,
 }
@@ -121,9 +124,14 @@ impl Lab {
 impl Ground {
     fn load(mutant: &Mutant) -> Result<Self, String> {
         let loaded = load_entry(&mutant.entry(), None).map_err(|e| e.to_string())?;
+        let grid = match loaded.file.grid {
+            Some(_) => Some(Observed::new("spec", GridRun::new(&loaded)?)),
+            None => None,
+        };
         Ok(Self {
             plan: Plan::new(&loaded.scene, true),
             loaded,
+            grid,
             specs: BTreeMap::new(),
             sound: BTreeSet::new(),
         })
@@ -131,7 +139,7 @@ impl Ground {
 
     /// Runs the spec on a grid, once.
     fn prepare(&mut self, bits: u32) -> Result<(), String> {
-        if !self.specs.contains_key(&bits) {
+        if self.grid.is_none() && !self.specs.contains_key(&bits) {
             let snapped = primitives(&self.loaded.scene, bits);
             let run = SpecRun::new(&self.loaded.scene, snapped, &self.plan)?;
             self.specs.insert(bits, Observed::new("spec", run));
@@ -212,6 +220,17 @@ impl Ground {
             file,
             ..
         } = &self.loaded;
+        if let (Some(spec), Some(section)) = (&self.grid, file.grid) {
+            let leg = GridLeg {
+                adapter,
+                path,
+                spec,
+                capacity: section.capacity,
+            };
+            let mut rows = Rows::new(name, family);
+            leg.run(&mut rows)?;
+            return Ok(rows.rows);
+        }
         let spec = &self.specs[&adapter.bits(path)];
         let mut rows = Rows::new(name, family);
         if vertex {

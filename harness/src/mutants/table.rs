@@ -12,10 +12,11 @@ use crate::corpus::{self, Entry};
 use crate::replay::gpu::PathName;
 use crate::text::hex;
 
-const TABLES: [(&str, &str); 3] = [
+const TABLES: [(&str, &str); 4] = [
     ("vertex.toml", include_str!("vertex.toml")),
     ("raster.toml", include_str!("raster.toml")),
     ("abuffer.toml", include_str!("abuffer.toml")),
+    ("grid.toml", include_str!("grid.toml")),
 ];
 
 /// A named defect, and where it must show.
@@ -187,7 +188,7 @@ impl Mutant {
     pub fn entry(&self) -> Entry {
         Entry {
             name: self.scene.clone(),
-            family: "abuffer".into(),
+            family: self.scene.split('/').next().unwrap_or_default().into(),
             path: corpus::root().join(&self.scene).join("scene.toml"),
         }
     }
@@ -229,7 +230,7 @@ mod tests {
             for path in m.paths() {
                 let sources = m.sources(path == Path::Native, || 1.0);
                 let sources = sources.unwrap_or_else(|e| panic!("{}: {e}", m.name));
-                for root in ["vertex", "raster", "abuffer"] {
+                for root in ["vertex", "raster", "abuffer", "grid"] {
                     let program = sources
                         .link(root)
                         .and_then(triptych_gpu::wgsl::Linked::parse);

@@ -17,7 +17,7 @@ use crate::observe::{Observed, Spec};
 use crate::plan::GridPlan;
 use crate::registry::{Chain, stages_of};
 use crate::row::Class;
-use gpu::Leg;
+pub use gpu::GridLeg;
 pub use spec::GridRun;
 
 impl Run<'_> {
@@ -69,7 +69,7 @@ impl Run<'_> {
             return Ok(());
         }
         let spec = self.grid_spec()?;
-        let leg = Leg {
+        let leg = GridLeg {
             adapter,
             path,
             spec: &spec,

@@ -12,19 +12,30 @@ use crate::compare::{Judgement, compare};
 use crate::observe::{Gpu, Observed, Spec};
 use crate::replay::gpu::Adapter;
 use crate::replay::rows::Rows;
+use crate::row::Class;
 use crate::scene::value::Capacity;
 
+/// Why lists of a device are not followed.
+const DAMAGED: &str = "the device's own lists are damaged: see the stages before";
+
 /// One GPU leg of one scene.
-pub(super) struct Leg<'a> {
-    pub(super) adapter: &'a Adapter,
-    pub(super) path: Path,
-    pub(super) spec: &'a Observed<Spec, GridRun>,
+pub struct GridLeg<'a> {
+    /// The adapter.
+    pub adapter: &'a Adapter,
+    /// With words or with native integers.
+    pub path: Path,
+    /// The spec's results.
+    pub spec: &'a Observed<Spec, GridRun>,
     /// Entries of the first attempt.
-    pub(super) capacity: Capacity,
+    pub capacity: Capacity,
 }
 
-impl Leg<'_> {
-    pub(super) fn run(&self, rows: &mut Rows) -> Result<(), GpuError> {
+impl GridLeg<'_> {
+    /// Adds a row for each stage.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn run(&self, rows: &mut Rows) -> Result<(), GpuError> {
         let mut stages = self.stages()?;
         match self.spec.value.membership {
             Membership::Box => self.lists(&mut stages, rows)?,
@@ -67,9 +78,20 @@ impl Leg<'_> {
         Stages::new(device)
     }
 
+    fn label(&self) -> String {
+        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+    }
+
     fn seen<T>(&self, value: T, stages: &Stages<'_>) -> Observed<Gpu, T> {
-        let label = format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name());
-        Observed::new(label, value).taking(stages.time)
+        Observed::new(self.label(), value).taking(stages.time)
+    }
+
+    /// How many entries a device's own offsets make room for; `None` if they do not rise, or
+    /// lead beyond what boxes touch.
+    fn entries_of(&self, offsets: &[u32]) -> Option<u32> {
+        let most = self.spec.value.box_runs().prims.len();
+        let last = offsets.last().copied().unwrap_or(0);
+        (offsets.is_sorted() && last as usize <= most).then_some(last)
     }
 
     /// Lists by boxes, equal to the bit.
@@ -129,7 +151,11 @@ impl Leg<'_> {
         rows.add("scan", &own, &seen, judgement);
 
         let offsets = seen.value;
-        let entries = offsets.last().copied().unwrap_or(0);
+        let Some(entries) = self.entries_of(&offsets) else {
+            let (label, reason) = (self.label(), DAMAGED.to_owned());
+            rows.skip("fill", "spec", &label, Class::Decision, reason);
+            return Ok(());
+        };
         let filled = stages.fill(entries, entries)?;
         let seen = self.seen(filled, stages);
         let bounds = self
@@ -191,14 +217,24 @@ impl Leg<'_> {
         let mut stages = self.stages()?;
         stages.count()?;
         let offsets = stages.scan()?;
-        let entries = offsets.last().copied().unwrap_or(0);
-        stages.fill(entries, entries)?;
+        let spec = self.spec.map(|_| ());
+        let Some(entries) = self.entries_of(&offsets) else {
+            let (label, reason) = (self.label(), DAMAGED.to_owned());
+            rows.skip("end to end", &spec.label, &label, Class::Decision, reason);
+            return Ok(());
+        };
+        let prims = stages.fill(entries, entries)?;
+        let triangles = self.spec.value.blockers.triangles.len();
+        if prims.iter().any(|prim| *prim as usize >= triangles) {
+            let (label, reason) = (self.label(), DAMAGED.to_owned());
+            rows.skip("end to end", &spec.label, &label, Class::Decision, reason);
+            return Ok(());
+        }
         let judgement = Judgement {
             note: "closest hits from its own lists".to_owned(),
             ..self.traced(&mut stages, Query::Closest)?
         };
-        let spec = self.spec.map(|_| ());
-        let seen = Observed::<Gpu, _>::new(self.seen((), &stages).label, ());
+        let seen = Observed::<Gpu, _>::new(self.label(), ());
         rows.add("end to end", &spec, &seen, judgement);
         Ok(())
     }
