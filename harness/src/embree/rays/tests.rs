@@ -174,6 +174,10 @@ const RIGHT: [Point; 3] = [[0, 0, 0], [0, 4096, 0], [0, 0, 4096]];
 
 #[test]
 fn a_bound_is_what_is_worked_out_by_hand() {
+    let ray = Ray::between([-1024, 1024, 1024], [1024, 1024, 1024]);
+    let Pair::Inside(met) = pair(&ray, RIGHT) else {
+        panic!("it goes through the middle");
+    };
     // N = (2^24, 0, 0) and d = (0, ., .): N's own error does not count. Each dot product is
     // off by 3 u of itself, the reciprocal and its product by 5.25 u of t, which is 1 / 2.
     let u = 2.0_f64.powi(-24);
