@@ -188,6 +188,37 @@ fn a_bound_is_what_is_worked_out_by_hand() {
 }
 
 #[test]
+fn the_error_of_a_slanting_normal_counts_with_the_size_of_the_triangle() {
+    let k = 4096;
+    let slanting = [[0, 0, 0], [k, k, 0], [0, 0, k]];
+    let ray = Ray::between([-1024, 1024, 1024], [3072, 1024, 1024]);
+    let Pair::Inside(met) = pair(&ray, slanting) else {
+        panic!("it goes through the middle");
+    };
+    // N = (1, -1, 0) k^2, its errors (2, 2, 0) u k^2, as each component has a pair of edges
+    // without a second term. N . D = 4096 k^2, d = (-1, -1, -1) 1024, v0 = (1, -1, -1) 1024.
+    let u = 2.0_f64.powi(-24);
+    let of_normal = 1024.0 * 2.0 * 2.0;
+    let of_dots = 3.0 * 2.0 * 1024.0 + 3.0 * 4096.0 / 2.0;
+    let by_hand = u * ((of_normal + of_dots) / 4096.0 + 5.25 / 2.0);
+    let ratio = met.bound / by_hand;
+    assert!((1.0..1.01).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn a_sum_that_rounds_counts() {
+    // From the corner a to b: e = (0, 1, 1), s = (0, 1, 2^24 + 1), which is rounded by 1. The
+    // components of the cross product are (2^24, 0, 0), whose products are 2^24 + 1 and 1.
+    let far = 1 << 22;
+    let corners = [[0, 0, far], [0, 1, far + 1], [9, 9, 9]];
+    let ray = Ray::between([0, 0, -far], [1, 0, -far]);
+    let [_, _, error] = edge_errors(&ray, corners);
+    let by_hand = 1.0 + (1.0 + 4.0);
+    let ratio = error / by_hand;
+    assert!((1.0..1.01).contains(&ratio), "{ratio}");
+}
+
+#[test]
 fn ends_of_a_segment_on_a_triangle_are_open() {
     let at = [0, 1024, 1024];
     let edge = |ray: Ray| matches!(pair(&ray, RIGHT), Pair::Edge(Some(_)));

@@ -13,7 +13,7 @@ const EACH: usize = 40_000;
 
 /// What rays are aimed at.
 #[derive(Clone, Copy, Debug)]
-pub enum Kind {
+enum Kind {
     /// Segments between points of the box around the mesh.
     Anywhere,
     /// Segments in the plane of a triangle, but for rounding, through its inside.
@@ -27,7 +27,7 @@ pub enum Kind {
 }
 
 /// All of them.
-pub const KINDS: [Kind; 5] = [
+const KINDS: [Kind; 5] = [
     Kind::Anywhere,
     Kind::Grazing,
     Kind::Corner,
@@ -36,7 +36,7 @@ pub const KINDS: [Kind; 5] = [
 ];
 
 /// The mesh, snapped to a lattice. It comes with set-up, as the corpus has it.
-pub fn bunny() -> Scene {
+fn bunny() -> Scene {
     let loaded = load("abuffer/bunny");
     let points = loaded.world.points(&loaded.scene);
     let lattice = Lattice::around(points.iter().copied()).expect("a mesh of numbers");
@@ -66,7 +66,7 @@ fn mixed(corners: [Point; 3], parts: [f64; 3]) -> Point {
 }
 
 /// A ray of a kind.
-pub fn ray(scene: &Scene, random: &mut Random, kind: Kind) -> Ray {
+fn ray(scene: &Scene, random: &mut Random, kind: Kind) -> Ray {
     let count = i32::try_from(scene.blockers.triangles.len()).expect("not many");
     let prim = random.within(0, count - 1).cast_unsigned();
     let corners = scene.blockers.corners(prim);
@@ -97,7 +97,7 @@ pub fn ray(scene: &Scene, random: &mut Random, kind: Kind) -> Ray {
     }
 }
 
-pub fn rays(scene: &Scene, kind: Kind, count: usize, seed: u64) -> Vec<Ray> {
+fn rays(scene: &Scene, kind: Kind, count: usize, seed: u64) -> Vec<Ray> {
     let mut random = Random(seed);
     (0..count).map(|_| ray(scene, &mut random, kind)).collect()
 }
@@ -111,6 +111,7 @@ fn a_scanned_mesh_agrees() {
             let vote = scene.vote(&rays, query);
             println!("{kind:?} {query:?}: {vote}");
             assert_eq!(vote.disagree, 0, "{kind:?} {query:?}: {vote}");
+            assert!(vote.edge * 2 < vote.rays, "{kind:?} {query:?}: {vote}");
             assert!(
                 query == Query::Any || vote.times > 1_000 && vote.error_over_bound > 0.1,
                 "{kind:?}: {vote}"
