@@ -133,9 +133,7 @@ impl Bare {
     fn intersect(&self, ray: RTCRay, collector: Option<&mut Collector>) -> Option<Hit> {
         let mut room = Room::new(ray);
         let mut arguments = collector.map(Collector::arguments);
-        let arguments = arguments
-            .as_mut()
-            .map_or(ptr::null_mut(), |a| ptr::from_mut(a));
+        let arguments = arguments.as_mut().map_or(ptr::null_mut(), ptr::from_mut);
         // SAFETY: the scene is committed and lives as long as `self`. Embree writes within
         // `room`, which is as long and as aligned as its own structure. It takes null for
         // the default arguments; others it reads, and calls their filter on this thread,

@@ -61,7 +61,9 @@ fn of(random: &mut Random, corners: [Point; 3]) -> Point {
 fn mixed(corners: [Point; 3], parts: [f64; 3]) -> Point {
     [0, 1, 2].map(|i| {
         let sum: f64 = (0..3).map(|c| parts[c] * f64::from(corners[c][i])).sum();
-        sum.round() as i32
+        #[expect(clippy::cast_possible_truncation, reason = "between corners")]
+        let nearest = sum.round() as i32;
+        nearest
     })
 }
 

@@ -10,6 +10,13 @@ use crate::compare::embree::{RayConflict, RayVote};
 use crate::embree::Hit;
 use crate::embree::rays::bound::Pair;
 
+/// As Embree would have it.
+fn single(t: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "far less than the bound")]
+    let single = t as f32;
+    single
+}
+
 /// A bug that the vote must see at so many rays, for nothing else than what it is.
 #[track_caller]
 fn assert_seen(vote: &RayVote, rays: u64, is: fn(&RayConflict) -> bool) {
@@ -68,7 +75,7 @@ fn a_triangle_behind_the_nearest_is_seen() {
     let scene = sheets();
     let behind = scene.changed(|ray, hit| {
         let time = crossing(ray, scene.blockers.corners(1));
-        let t = time.map(|time| time.value() as f32);
+        let t = time.map(|time| single(time.value()));
         hit.and(t).map(|t| Hit { prim: 1, t })
     });
     let vote = scene.against(&straight(), Query::Closest, &behind);
@@ -82,7 +89,7 @@ fn a_time_off_by_twice_the_bound_is_seen() {
     let off = scene.changed(|ray, hit| {
         hit.map(|hit| match scene.pair(ray, hit.prim) {
             Pair::Inside(met) => Hit {
-                t: (met.t - 2.0 * met.bound) as f32,
+                t: single(met.t - 2.0 * met.bound),
                 ..hit
             },
             _ => hit,
