@@ -40,7 +40,8 @@ fn blockers() -> impl Strategy<Value = Blockers> {
         prop::collection::vec(any::<[Index; 3]>(), 0..16),
     )
         .prop_map(|(vertices, rows)| {
-            let row = |row: [Index; 3]| row.map(|i| u32::try_from(i.index(vertices.len())).unwrap());
+            let row =
+                |row: [Index; 3]| row.map(|i| u32::try_from(i.index(vertices.len())).unwrap());
             Blockers {
                 triangles: rows.into_iter().map(row).collect(),
                 vertices,
@@ -76,9 +77,8 @@ fn place(blockers: &Blockers, grid: &Grid) -> BoxedStrategy<Point> {
     let [x, y, z] = axes.map(prop::sample::select);
     let corner = prop::sample::select(vertices);
     let beside = (corner.clone(), [-1..=1_i32, -1..=1, -1..=1]);
-    let middle = (corner.clone(), corner.clone()).prop_map(|(a, b)| {
-        [0, 1, 2].map(|i| i32::midpoint(a[i], b[i]))
-    });
+    let middle = (corner.clone(), corner.clone())
+        .prop_map(|(a, b)| [0, 1, 2].map(|i| i32::midpoint(a[i], b[i])));
     prop_oneof![
         2 => corner,
         2 => beside.prop_map(|(a, b)| [0, 1, 2].map(|i| a[i] + b[i])),

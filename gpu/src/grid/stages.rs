@@ -60,7 +60,9 @@ impl<'g> Stages<'g> {
     pub fn count(&mut self) -> Result<Vec<u32>, GpuError> {
         let buffers = [("counts", &self.counts)];
         self.time = self.device.sweep("count", 0, &buffers)?;
-        self.device.gpu.read(&self.counts, self.device.total() as usize)
+        self.device
+            .gpu
+            .read(&self.counts, self.device.total() as usize)
     }
 
     /// Puts counts in place of the device's own.
@@ -73,7 +75,10 @@ impl<'g> Stages<'g> {
     pub fn scan(&mut self) -> Result<Vec<u32>, GpuError> {
         let total = self.device.total();
         let tiles = total.div_ceil(TILE);
-        let sums = self.device.gpu.storage("sums of tiles", 4 * u64::from(tiles))?;
+        let sums = self
+            .device
+            .gpu
+            .storage("sums of tiles", 4 * u64::from(tiles))?;
         let buffers = [
             ("counts", &self.counts),
             ("offsets", &self.offsets),
@@ -129,7 +134,10 @@ impl<'g> Stages<'g> {
         if longest <= SHORT {
             return Ok(());
         }
-        let mut merged = self.device.gpu.storage("entries of cells", 4 * u64::from(entries))?;
+        let mut merged = self
+            .device
+            .gpu
+            .storage("entries of cells", 4 * u64::from(entries))?;
         let mut run = 1;
         while run < longest {
             let buffers = [
@@ -137,7 +145,9 @@ impl<'g> Stages<'g> {
                 ("prims", &self.prims),
                 ("merged", &merged),
             ];
-            self.time += self.device.each("fill_merge", runs(entries, run), &buffers)?;
+            self.time += self
+                .device
+                .each("fill_merge", runs(entries, run), &buffers)?;
             std::mem::swap(&mut self.prims, &mut merged);
             run *= 2;
         }
@@ -172,7 +182,11 @@ impl<'g> Stages<'g> {
 
     /// Stage `trace`: what each ray meets.
     pub fn trace(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
-        let [x, y, z] = [self.device.cells.x, self.device.cells.y, self.device.cells.z];
+        let [x, y, z] = [
+            self.device.cells.x,
+            self.device.cells.y,
+            self.device.cells.z,
+        ];
         let bricks = Cells {
             items: x.div_ceil(4) * y.div_ceil(4) * z.div_ceil(4),
             ..self.device.cells

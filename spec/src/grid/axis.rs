@@ -72,8 +72,8 @@ impl Axis {
             "blockers are inside the grid"
         );
         let first = self.boundaries[1..].partition_point(|b| b + WIDENED < low);
-        let end = self.boundaries[..self.boundaries.len() - 1]
-            .partition_point(|b| b - WIDENED <= high);
+        let end =
+            self.boundaries[..self.boundaries.len() - 1].partition_point(|b| b - WIDENED <= high);
         [first, end - 1].map(|i| u32::try_from(i).expect("a cell"))
     }
 

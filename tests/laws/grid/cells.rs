@@ -17,7 +17,8 @@ use crate::config;
 fn all_cells(axes: &[Axis; 3]) -> Vec<[u32; 3]> {
     let [x, y, z] = axes.each_ref().map(Axis::cells);
     let rows = (0..z).flat_map(|k| (0..y).map(move |j| [j, k]));
-    rows.flat_map(|[j, k]| (0..x).map(move |i| [i, j, k])).collect()
+    rows.flat_map(|[j, k]| (0..x).map(move |i| [i, j, k]))
+        .collect()
 }
 
 /// The widened cell.

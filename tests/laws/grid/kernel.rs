@@ -1,12 +1,12 @@
 //! A kernel steps through cells in `f32`, whose rounding WGSL leaves open.
 
 use proptest::prelude::*;
+use triptych_spec::grid::Grid;
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::crossing;
 use triptych_spec::grid::lattice::REACH;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::walk::step_bound;
-use triptych_spec::grid::Grid;
 
 use super::aimed;
 use crate::config;
@@ -44,11 +44,19 @@ impl<'a> Kernel<'a> {
 
     /// Cells in the order of the ray, `n` from 0.
     fn nth(&self, axis: usize, n: usize) -> usize {
-        if self.forward(axis) { n } else { self.cells(axis) - 1 - n }
+        if self.forward(axis) {
+            n
+        } else {
+            self.cells(axis) - 1 - n
+        }
     }
 
     fn near(&self, axis: usize, n: usize) -> usize {
-        if self.forward(axis) { n } else { self.cells(axis) - n }
+        if self.forward(axis) {
+            n
+        } else {
+            self.cells(axis) - n
+        }
     }
 
     fn moving(&self) -> impl Iterator<Item = usize> + use<> {
@@ -76,13 +84,20 @@ impl<'a> Kernel<'a> {
                     while low < high {
                         let middle = usize::midpoint(low, high);
                         let time = self.time(axis, self.near(axis, middle), loose);
-                        if time <= entry { low = middle + 1 } else { high = middle }
+                        if time <= entry {
+                            low = middle + 1
+                        } else {
+                            high = middle
+                        }
                     }
                     low
                 }
             };
             // At its very end the ray is still at the grid.
-            ns[axis] = passed.checked_sub(1).filter(|n| *n <= self.cells(axis))?.min(self.cells(axis) - 1);
+            ns[axis] = passed
+                .checked_sub(1)
+                .filter(|n| *n <= self.cells(axis))?
+                .min(self.cells(axis) - 1);
         }
         Some(ns)
     }
@@ -142,7 +157,11 @@ fn crossings() {
     let mut loose = Loose::new(1);
     let mut most = 0.0_f64;
     for d in (1 << 23..1 << 24).step_by(4999) {
-        for way in [f64::from(REACH) * 2.0, 12_345_678.0, 3.0 * f64::from(1 << 22) - 1.0] {
+        for way in [
+            f64::from(REACH) * 2.0,
+            12_345_678.0,
+            3.0 * f64::from(1 << 22) - 1.0,
+        ] {
             let inverse = loose.div(1.0, d as f32);
             let time = f64::from(loose.mul(way as f32, inverse));
             most = most.max((time * f64::from(d) - way).abs());

@@ -188,7 +188,10 @@ fn inside(grid: &Grid, ray: &Ray, cell: [u32; 3], time: Time) -> bool {
 fn no_lattice() {
     assert_eq!(Lattice::around([]), Err(LatticeError::Empty));
     let nan = [0.0, f64::INFINITY, 0.0];
-    assert_eq!(Lattice::around([nan]), Err(LatticeError::NotFinite(f64::INFINITY)));
+    assert_eq!(
+        Lattice::around([nan]),
+        Err(LatticeError::NotFinite(f64::INFINITY))
+    );
     let lattice = Lattice::around([[1.0; 3]]).expect("a point is enough");
     assert_eq!(lattice.snap([1.0; 3]), Some([0; 3]));
     assert_eq!(lattice.snap([3.0; 3]), None, "beyond the lattice");
