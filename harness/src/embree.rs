@@ -3,19 +3,21 @@
 //! In screen space, parallel rays run through the samples of the target, and every
 //! snapped triangle that Embree reports along them is collected ([`scene`]). In world
 //! space ([`world`]) these are the camera's rays ([`view`]), and the triangles are those
-//! of the scene, as loaded. Embree computes in `f32`; how far that can be trusted is
-//! derived, not measured ([`bound`], [`world::bound`]).
+//! of the scene, as loaded. On a grid's lattice any rays are asked, whether and what they
+//! meet ([`rays`]). Embree computes in `f32`; how far that can be trusted is derived, not
+//! measured ([`bound`], [`world::bound`], [`rays::bound`]).
 //!
-//! The embree4-rs wrapper serves for building and tracing; only the library's
-//! version ([`mod@library`]) and what its cost is measured beside ([`mod@bare`]) need the
-//! bindings below it. Those are older than the library: Embree 4.4 writes an accepted hit
-//! past the end of the wrapper's hit structure. Here no hit is ever accepted; the closest
-//! hit must not be asked of [`embree4_rs::CommittedScene::intersect_1`].
+//! The embree4-rs wrapper serves for building and tracing; only the library's version
+//! ([`mod@library`]) and bare calls ([`mod@bare`]) need the bindings below it. Those are
+//! older than the library: Embree 4.4 writes an accepted hit past the end of the wrapper's
+//! hit structure. The wrapper's callers accept no hit; the closest one is asked of
+//! [`bare::Bare`] alone, never of [`embree4_rs::CommittedScene::intersect_1`].
 
 pub mod bare;
 pub mod bound;
 mod collect;
 pub mod library;
+pub mod rays;
 pub mod rounded;
 pub mod scene;
 pub mod view;

@@ -1,14 +1,17 @@
-//! Bare calls of Embree's C interface, for `triptych bench legs` alone: what our own cost
-//! is measured beside them.
+//! Bare calls of Embree's C interface.
 //!
-//! The same triangles, options, rays and filter as the leg's (`embree::collect`), without
-//! the wrapper, which asks for the device's error after every ray.
+//! `triptych bench legs` measures our own cost beside them, with the same triangles,
+//! options, rays and filter as the leg's (`embree::collect`), without the wrapper, which
+//! asks for the device's error after every ray. Rays through blockers ([`super::rays`]) are
+//! asked here as well: the wrapper has no room for a closest hit, and no `rtcOccluded1`.
+
+use std::ptr;
 
 use embree4_sys::{
     RTC_INVALID_GEOMETRY_ID, RTCBufferType, RTCDevice, RTCError, RTCFormat, RTCGeometry,
-    RTCGeometryType, RTCHit, RTCRayHit, RTCScene, rtcAttachGeometry, rtcCommitGeometry,
+    RTCGeometryType, RTCHit, RTCRay, RTCRayHit, RTCScene, rtcAttachGeometry, rtcCommitGeometry,
     rtcCommitScene, rtcGetDeviceError, rtcIntersect1, rtcNewDevice, rtcNewGeometry, rtcNewScene,
-    rtcReleaseDevice, rtcReleaseGeometry, rtcReleaseScene, rtcSetNewGeometryBuffer,
+    rtcOccluded1, rtcReleaseDevice, rtcReleaseGeometry, rtcReleaseScene, rtcSetNewGeometryBuffer,
     rtcSetSceneBuildQuality, rtcSetSceneFlags,
 };
 use triptych_spec::vertex::Primitives;
@@ -21,7 +24,6 @@ use super::scene::{Depth, Hit, corners, ray};
 pub struct Bare {
     device: RTCDevice,
     scene: RTCScene,
-    bits: u32,
 }
 
 /// A ray with room for its hit: since 4.4 Embree's own is four bytes longer than that of
@@ -32,18 +34,41 @@ struct Room {
     spare: [u32; 4],
 }
 
+impl Room {
+    fn new(ray: RTCRay) -> Self {
+        let hit = RTCHit::default();
+        Self {
+            ray: RTCRayHit { ray, hit },
+            spare: [RTC_INVALID_GEOMETRY_ID; 4],
+        }
+    }
+
+    /// The triangle that was hit, and when.
+    fn found(&self) -> Option<Hit> {
+        (self.ray.hit.geomID != RTC_INVALID_GEOMETRY_ID).then_some(Hit {
+            prim: self.ray.hit.primID,
+            t: self.ray.ray.tfar,
+        })
+    }
+}
+
 impl Bare {
-    /// Copies the spec's snapped triangles and builds the tree.
+    /// The spec's snapped triangles.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn snapped(primitives: &Primitives) -> Result<Self, EmbreeError> {
+        let corners = corners(primitives, &Depth::new(primitives));
+        Self::new(&corners, &primitives.prims)
+    }
+
+    /// Copies triangles and builds the tree.
     ///
     /// # Errors
     /// If a triangle names a corner that is not there, if there are none, or if Embree
     /// reports an error.
     #[expect(unsafe_code, reason = "a foreign interface")]
-    pub fn new(primitives: &Primitives) -> Result<Self, EmbreeError> {
-        let (corners, triangles) = (
-            &corners(primitives, &Depth::new(primitives)),
-            &primitives.prims,
-        );
+    pub fn new(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result<Self, EmbreeError> {
         check(corners.len(), triangles)?;
         // SAFETY: CONFIG ends in NUL. `bare` owns device and scene from where they are made.
         // What Embree gives without an error is not null. The geometry is released here,
@@ -55,11 +80,7 @@ impl Bare {
                 return Err(EmbreeError::new("new device", "refused on this machine"));
             }
             let scene = rtcNewScene(device);
-            let bare = Self {
-                device,
-                scene,
-                bits: primitives.bits,
-            };
+            let bare = Self { device, scene };
             bare.check()?;
             let mesh = rtcNewGeometry(device, RTCGeometryType::TRIANGLE);
             bare.check()?;
@@ -84,24 +105,43 @@ impl Bare {
     /// One call: every hit of the ray through a pixel's sample is added to `hits`, in the
     /// order in which Embree finds them; a triangle may be reported more than once. False if
     /// a hit went past the filter.
-    #[expect(unsafe_code, reason = "a foreign interface")]
-    pub fn trace(&self, column: u32, row: u32, hits: &mut Vec<Hit>) -> bool {
-        let mut collector = Collector::new(hits);
-        let mut arguments = collector.arguments();
-        let ray = ray(column, row, self.bits);
-        let hit = RTCHit::default();
-        let mut room = Room {
-            ray: RTCRayHit { ray, hit },
-            spare: [RTC_INVALID_GEOMETRY_ID; 4],
-        };
-        // SAFETY: the scene is committed and lives as long as `self`. Embree writes within
-        // `room`, which is as long and as aligned as its own structure, reads `arguments`,
-        // and calls the filter on this thread, with the context, until it returns.
-        unsafe {
-            rtcIntersect1(self.scene, (&raw mut room).cast(), &raw mut arguments);
-        }
+    pub fn trace(&self, [column, row]: [u32; 2], bits: u32, hits: &mut Vec<Hit>) -> bool {
         // A hit that is rejected is not written back.
-        room.ray.hit.geomID == RTC_INVALID_GEOMETRY_ID
+        let found = self.intersect(ray(column, row, bits), Some(&mut Collector::new(hits)));
+        found.is_none()
+    }
+
+    /// One call of `rtcIntersect1`: what Embree finds first.
+    pub fn closest(&self, ray: RTCRay) -> Option<Hit> {
+        self.intersect(ray, None)
+    }
+
+    /// One call of `rtcOccluded1`: whether Embree finds anything.
+    #[expect(unsafe_code, reason = "a foreign interface")]
+    pub fn occluded(&self, mut ray: RTCRay) -> bool {
+        // SAFETY: the scene is committed and lives as long as `self`. A ray has the same
+        // layout and alignment in every Embree 4, and Embree writes nothing else. Null
+        // arguments are the defaults.
+        unsafe {
+            rtcOccluded1(self.scene, &raw mut ray, ptr::null_mut());
+        }
+        ray.tfar == f32::NEG_INFINITY
+    }
+
+    /// One call, with the collector's filter or with the default arguments.
+    #[expect(unsafe_code, reason = "a foreign interface")]
+    fn intersect(&self, ray: RTCRay, collector: Option<&mut Collector>) -> Option<Hit> {
+        let mut room = Room::new(ray);
+        let mut arguments = collector.map(Collector::arguments);
+        let arguments = arguments.as_mut().map_or(ptr::null_mut(), ptr::from_mut);
+        // SAFETY: the scene is committed and lives as long as `self`. Embree writes within
+        // `room`, which is as long and as aligned as its own structure. It takes null for
+        // the default arguments; others it reads, and calls their filter on this thread,
+        // with the collector as context, until it returns.
+        unsafe {
+            rtcIntersect1(self.scene, (&raw mut room).cast(), arguments);
+        }
+        room.found()
     }
 
     /// What Embree has to report of this thread's calls since it was last asked.

@@ -24,23 +24,11 @@
 
 use triptych_spec::vertex::Primitives;
 
+use super::rounded::{RECIPROCAL, SECOND_ORDER, U};
 use super::scene::Depth;
-
-/// Relative error of one `f32` operation rounded to nearest.
-const U: f64 = f32::EPSILON as f64 / 2.0;
 
 /// Integers up to here are exact in `f32`.
 const EXACT: f64 = 16_777_216.0;
-
-/// Error of `rcp(a) * b` relative to the quotient. The approximation that it
-/// starts from is off by at most 1.5 * 2^-12; the Newton step `r + r (1 - a r)`
-/// squares that to 2.25 U and adds U for `a r` and U for the sum (its other
-/// roundings are of second order); the product adds U.
-const RECIPROCAL: f64 = 5.25 * U;
-
-/// Terms dropped above are at most 2^-11 of those kept (an `rcpps` error times a
-/// rounding); `f64` rounding is far below that.
-const SECOND_ORDER: f64 = 1.0 + 1.0 / 1024.0;
 
 /// A triangle as Embree has it, with what does not depend on the ray.
 #[derive(Clone, Copy, Debug)]

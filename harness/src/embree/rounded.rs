@@ -3,6 +3,17 @@
 /// Relative error of one operation rounded to nearest.
 pub const U: f64 = f32::EPSILON as f64 / 2.0;
 
+/// Error of Embree's `rcp(a) * b` relative to the quotient. The approximation that it
+/// starts from is off by at most 1.5 * 2^-12; the Newton step `r + r (1 - a r)`
+/// squares that to 2.25 U and adds U for `a r` and U for the sum (its other
+/// roundings are of second order); the product adds U.
+pub const RECIPROCAL: f64 = 5.25 * U;
+
+/// Room for products of two errors, of which one at least is that of an `f32` operation or
+/// of the approximate reciprocal: they are at most 2^-11 of what is kept. The rounding of
+/// `f64` is far below that.
+pub const SECOND_ORDER: f64 = 1.0 + 1.0 / 1024.0;
+
 /// What flushing a subnormal changes at most.
 const TINY: f64 = f32::MIN_POSITIVE as f64;
 

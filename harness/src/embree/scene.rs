@@ -16,9 +16,10 @@ const COORDINATE_MAX: i32 = 1 << 21;
 /// A triangle that Embree reports along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Row in [`Primitives::prims`]; in world space, in the scene's triangles.
+    /// Row in [`Primitives::prims`]; in world space, in the scene's triangles; on a lattice,
+    /// in those of the blockers.
     pub prim: u32,
-    /// Distance along the ray; [`Depth::key`] translates it.
+    /// Distance along the ray; [`Depth::key`] translates it. On a lattice, a time.
     pub t: f32,
 }
 

@@ -32,7 +32,7 @@ const MOST: f64 = 1.5;
 pub(super) fn measure(loaded: &Loaded, runs: u32, progress: &Progress) -> Result<Vec<Row>, String> {
     let spec = primitives(&loaded.scene, SUBPIXEL_BITS);
     let embree = EmbreeScene::new(&spec).map_err(|error| error.to_string())?;
-    let calls = Bare::new(&spec).map_err(|error| error.to_string())?;
+    let calls = Bare::snapped(&spec).map_err(|error| error.to_string())?;
     let hits = bare(&calls, &spec, 0..spec.size.height);
     if hits == 0 {
         return Err("Embree hits nothing".to_owned());
@@ -106,7 +106,7 @@ fn bare(calls: &Bare, spec: &Primitives, rows: std::ops::Range<u32>) -> u64 {
     for row in rows {
         for column in 0..spec.size.width {
             hits.clear();
-            calls.trace(column, row, &mut hits);
+            calls.trace([column, row], spec.bits, &mut hits);
             counted += hits.len() as u64;
         }
     }

@@ -1,6 +1,7 @@
 //! The comparer on scenes whose answer is known.
 
 mod planted;
+mod rays;
 mod world;
 
 use triptych_spec::raster::{Setup, cover, sample};

@@ -21,14 +21,8 @@
 //! distance. Then come the reciprocal and the last product.
 
 use super::World;
-use crate::embree::rounded::{Rounded, U, Vector, cross, dot};
+use crate::embree::rounded::{RECIPROCAL, Rounded, SECOND_ORDER, U, Vector, cross, dot};
 use crate::embree::view::Ray;
-
-/// Error of `rcp(a) * b` relative to the quotient ([`crate::embree::bound`]).
-const RECIPROCAL: f64 = 5.25 * U;
-
-/// Terms of second order, and the rounding of `f64`.
-const SECOND_ORDER: f64 = 1.0 + 1.0 / 1024.0;
 
 /// What must come of a ray and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]

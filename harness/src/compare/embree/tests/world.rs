@@ -14,7 +14,7 @@ use crate::scene::{Loaded, load_entry};
 /// without perspective.
 const SCENES: [&str; 3] = ["abuffer/mixed", "raster/near-plane", "raster/jittered-grid"];
 
-fn load(name: &str) -> Loaded {
+pub(super) fn load(name: &str) -> Loaded {
     let entry = Entry {
         name: name.into(),
         family: String::new(),
