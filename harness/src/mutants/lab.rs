@@ -228,7 +228,7 @@ impl Ground {
                 capacity: section.capacity,
             };
             let mut rows = Rows::new(name, family);
-            leg.run(&mut rows)?;
+            leg.each(&mut rows)?;
             return Ok(rows.rows);
         }
         let spec = &self.specs[&adapter.bits(path)];

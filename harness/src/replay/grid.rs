@@ -1,5 +1,6 @@
 //! A scene whose triangles block rays: the family `grid`.
 
+mod embree;
 mod gpu;
 mod spec;
 
@@ -28,9 +29,27 @@ impl Run<'_> {
             run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
             Ok(())
         })?;
-        if self.options.gpu {
-            self.on_adapters(Self::grid_leg)?;
+        if self.options.embree {
+            self.unit(Uses::Embree, &["grid", "embree"], Self::grid_vote)?;
         }
+        match self.options.gpu {
+            true => self.on_adapters(Self::grid_leg),
+            false => Ok(()),
+        }
+    }
+
+    fn grid_vote(&mut self) -> Result<(), Stop> {
+        let plan = GridPlan::new(self.loaded, self.options.skip);
+        if let Some(reason) = plan.skipped() {
+            let rows = &mut self.rows;
+            rows.skip("trace", "spec", "embree", Class::Vote, reason);
+            return Ok(());
+        }
+        let spec = self.grid_spec()?;
+        // A bare mesh states no budget: its share is printed, not judged.
+        let stated = self.loaded.file.budget.edge.0;
+        let budget = (!self.loaded.bare).then_some(stated);
+        embree::run(&spec, budget, &mut self.rows);
         Ok(())
     }
 

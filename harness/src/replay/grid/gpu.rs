@@ -31,11 +31,20 @@ pub struct GridLeg<'a> {
 }
 
 impl GridLeg<'_> {
-    /// Adds a row for each stage.
+    /// Adds a row for each stage from the spec's input, and one for all of them end to end.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub fn run(&self, rows: &mut Rows) -> Result<(), GpuError> {
+        self.each(rows)?;
+        self.end_to_end(rows)
+    }
+
+    /// Adds a row for each stage from the spec's input.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn each(&self, rows: &mut Rows) -> Result<(), GpuError> {
         let mut stages = self.stages()?;
         match self.spec.value.membership {
             Membership::Box => self.lists(&mut stages, rows)?,
@@ -56,7 +65,7 @@ impl GridLeg<'_> {
                 judgement,
             );
         }
-        self.end_to_end(rows)
+        Ok(())
     }
 
     fn stages(&self) -> Result<Stages<'_>, GpuError> {

@@ -1,0 +1,56 @@
+//! Embree's vote on a grid's rays.
+
+use std::time::Instant;
+
+use triptych_spec::grid::trace::Query;
+
+use super::spec::GridRun;
+use crate::compare::embree::compare_rays;
+use crate::compare::{Judgement, compare};
+use crate::embree::EmbreeError;
+use crate::embree::rays::RayScene;
+use crate::observe::{Embree, Observed, Spec};
+use crate::replay::rows::Rows;
+use crate::row::Class;
+
+/// Asks Embree of every ray, and adds a row for each query; `edge_budget` is the largest share
+/// of rays in class edge.
+pub(super) fn run(spec: &Observed<Spec, GridRun>, edge_budget: Option<f64>, rows: &mut Rows) {
+    if let Err(error) = ask(spec, edge_budget, rows) {
+        rows.fail("trace", &spec.label, "embree", None, error.to_string());
+    }
+}
+
+fn ask(
+    spec: &Observed<Spec, GridRun>,
+    edge_budget: Option<f64>,
+    rows: &mut Rows,
+) -> Result<(), EmbreeError> {
+    let scene = RayScene::new(&spec.value.blockers)?;
+    let embree = Observed::<Embree, _>::new("embree", scene);
+    for (query, name) in [(Query::Any, "any hit"), (Query::Closest, "closest hit")] {
+        let start = Instant::now();
+        let mut failed = None;
+        let judgement = compare(spec, &embree, |spec, scene| {
+            let vote = compare_rays(&spec.grid, &spec.blockers, &spec.rays, query, scene);
+            match vote {
+                Ok(vote) => {
+                    let judgement = vote.judgement(edge_budget);
+                    let note = format!("{name}: {}", judgement.note);
+                    Judgement { note, ..judgement }
+                }
+                Err(error) => {
+                    failed = Some(error);
+                    Judgement::new(Class::Vote, "rays")
+                }
+            }
+        });
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        let times = spec.map(|_| ()).taking(spec.value.times.trace);
+        let seen = embree.map(|_| ()).taking(start.elapsed());
+        rows.add("trace", &times, &seen, judgement);
+    }
+    Ok(())
+}
