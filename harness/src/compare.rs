@@ -135,3 +135,6 @@ pub fn compare<A: Against<B>, B, T, U>(
 ) -> Judgement {
     judge(&a.value, &b.value)
 }
+
+#[cfg(test)]
+mod tests;

@@ -163,7 +163,11 @@ fn no_sample_beyond_the_corners_squares_may_be_covered() {
     let left = region(&[[2.0, 3.5], [9.0, 2.0], [9.0, 5.0]]);
     assert_eq!(left.columns(3, SIZE).may, 2..9, "1.5 is before 1.75");
     let low = region(&[[2.0, 4.0], [7.0, 2.0], [7.0, 9.0]]);
-    assert_eq!(low.rows(SIZE), 2..9, "1.5 is above 1.75, and 9.5 below 9.25");
+    assert_eq!(
+        low.rows(SIZE),
+        2..9,
+        "1.5 is above 1.75, and 9.5 below 9.25"
+    );
     for row in [1, 9] {
         assert_eq!(low.columns(row, SIZE), Columns::default(), "row {row}");
     }
