@@ -200,14 +200,21 @@ fn a_row_that_may_go_either_way_is_not_judged_unless_it_differs() {
 }
 
 #[test]
-fn on_a_coarser_grid_more_may_go_either_way() {
-    let open = |step| Handed::new(&scene(), step).judge(&driver(&scene()))[0].admitted;
-    assert!(
-        open(0.5) > 5 * open(STEP),
-        "{} and {}",
-        open(0.5),
-        open(STEP)
-    );
+fn what_is_within_a_step_of_a_side_may_go_either_way() {
+    let mut scene = scene();
+    // A side a quarter of a pixel right of the samples of column 20.
+    let x = (20.75 - 24.0) / 24.0;
+    let corners = [[x, -0.9, 0.5], [x, 0.9, 0.5], [-0.9, 0.0, 0.5]];
+    for (vertex, position) in scene.vertices.iter_mut().zip(corners) {
+        vertex.position = position;
+    }
+    for (step, open) in [(0.5, true), (0.125, false)] {
+        let handed = Handed::new(&scene, step);
+        let Place::There(region) = &handed.places[0] else {
+            panic!("it is in view");
+        };
+        assert_eq!(region.columns(16, SIZE).is_open(20), open, "{step}");
+    }
 }
 
 /// Corners of w 2 and 4, in clip space and in pixels of a target whose middle is at (24, 16).

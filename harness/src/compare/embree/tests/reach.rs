@@ -80,14 +80,14 @@ fn pairs(spec: &Primitives) -> [u32; 2] {
         for (pixel, met) in (0_u32..).zip(met) {
             let edges = setup.edges([pixel % 64, pixel / 64].map(|at| sample(at, 8)));
             let near = edges.into_iter().min().unwrap_or(0);
-            let at = format!("pixel {pixel}, triangle {prim}: {edges:?}");
             if setup.covers(edges) || is_edge(edges) {
-                assert!(met, "left out: {at}");
+                assert!(met, "pixel {pixel}, triangle {prim}: {edges:?}");
                 all += 1;
                 beside += u32::from(near < 0);
             }
             // Class edge, and as little more as can be told by a constant.
-            assert!(!met || near >= -(setup.area >> EDGE_BITS) - 3, "{at}");
+            let nearly = near >= -(setup.area >> EDGE_BITS) - 3;
+            assert!(!met || nearly, "pixel {pixel}, triangle {prim}: {edges:?}");
         }
     }
     [all, beside]

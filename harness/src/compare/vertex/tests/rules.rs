@@ -199,3 +199,23 @@ fn a_triangle_that_is_outside_is_told_once() {
         );
     }
 }
+
+#[test]
+fn every_triangle_is_judged_as_its_own_row() {
+    let (_, mut scene) = random().swap_remove(0);
+    let last = u32::try_from(CHUNK).expect("few") + 1;
+    let triangle = |primitive| Triangle {
+        primitive,
+        ..scene.triangles[0]
+    };
+    scene.triangles = (0..=last).map(triangle).collect();
+    let (report, rows) = each(&scene, |row, triangle, part| {
+        part.triangles += 1;
+        assert_eq!(row, triangle.primitive as usize);
+        row % CHUNK == 1
+    });
+    assert_eq!(
+        (report.triangles, rows),
+        (u64::from(last) + 1, vec![1, CHUNK + 1])
+    );
+}
