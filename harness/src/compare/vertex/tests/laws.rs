@@ -261,8 +261,12 @@ fn where_nothing_is_promised_nothing_is_judged_but_counted() {
         transform, clip, ..
     } = Judged::new(&scene, &run);
     assert_eq!(transform.unbounded, transform.vertices);
-    let errors = (transform.error, transform.error_over_bound);
-    assert_eq!(errors, (0.0, 0.0), "errors are those of what has a bound");
+    // Nor is it an error of anything to be elsewhere.
+    let elsewhere = compare_transform(&scene, &vec![[0.0; 4]; scene.vertices.len()]);
+    for report in [&transform, &elsewhere] {
+        let figures = (report.outside, report.error, report.error_over_bound);
+        assert_eq!(figures, (0, 0.0, 0.0));
+    }
     assert_eq!(clip.undecided + clip.decisions, clip.triangles, "{clip}");
     assert_eq!(clip.admitted, clip.triangles, "{clip}");
     let nothing = Scene {

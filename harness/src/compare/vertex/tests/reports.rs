@@ -190,6 +190,16 @@ fn every_vertex_that_strays_is_counted_and_the_first_are_told() {
     assert!((off.error - 64.0).abs() < 1e-3, "{}", off.error);
     assert_eq!(off.judgement().causes, [(Cause::Vertex, 10)].into());
 
+    let mut one = positions.clone();
+    one[3][1] += 64.0;
+    let one = compare_transform(&scene, &one);
+    let [stray] = one.told[..] else {
+        panic!("one strays: {:?}", one.told);
+    };
+    let error = (f64::from(stray.observed) - stray.expected.value).abs();
+    assert_eq!(one.error, error);
+    assert_eq!(one.error_over_bound, error / stray.expected.bound);
+
     let fewer = compare_transform(&scene, &positions[..7]);
     assert_eq!((fewer.outside, fewer.told.len()), (10, 0));
     assert_eq!(fewer.judgement().differ(), 10);

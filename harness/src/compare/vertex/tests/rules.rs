@@ -219,3 +219,28 @@ fn every_triangle_is_judged_as_its_own_row() {
         (u64::from(last) + 1, vec![1, CHUNK + 1])
     );
 }
+
+/// A key is turned into its neighbour, which is inside: only where the triangle was cut must
+/// it be that of those beside it.
+#[test]
+fn corners_of_cut_triangles_must_meet_on_the_grid() {
+    let scene = floor();
+    let run = in_f32(&scene, BITS);
+    let polygons = run.polygons.as_ref().expect("the spec's");
+    let visible = |t: &usize| !polygon(polygons, *t).is_empty();
+    let mut told = 0;
+    for triangle in (0..scene.triangles.len()).filter(visible).step_by(61) {
+        let vertices = scene.triangles[triangle].vertices;
+        let seen = polygon(polygons, triangle);
+        let is_cut = seen != vertices.map(|v| run.positions[v as usize]);
+        let first = polygons.offsets[triangle] as usize;
+        let mut torn = run.primitives.clone();
+        let corners = torn.snapped[first..first + seen.len()].iter_mut();
+        corners.filter(|c| c[2] > 1 << 28).for_each(|c| c[2] ^= 1);
+        let report = compare_snap(&scene, BITS, &run.positions, polygons, &torn);
+        assert_eq!(report.outside, 0, "{:?}", report.told);
+        assert!(is_cut || report.cracks == 0, "{:?}", report.told);
+        told += report.cracks;
+    }
+    assert!(told > 0, "none is torn");
+}
