@@ -136,3 +136,6 @@ pub fn compare<A: Against<B>, B, T, U>(
 ) -> Judgement {
     judge(&a.value, &b.value)
 }
+
+#[cfg(test)]
+mod tests;

@@ -168,17 +168,11 @@ impl Setup {
         first_sample(low, bits, size.height)..first_sample(high + 1, bits, size.height)
     }
 
-    /// Columns whose samples lie in the triangle's width, or `beyond` sub-pixels outside.
-    pub fn columns(&self, beyond: i64, size: Size, bits: u32) -> Span {
-        let [low, high] = self.width();
-        let end = first_sample(high + beyond + 1, bits, size.width);
-        first_sample(low - beyond, bits, size.width)..end
-    }
-
-    /// The smallest and the largest x, in sub-pixels.
-    pub fn width(&self) -> [i64; 2] {
+    /// Columns whose samples lie in the triangle's width.
+    pub fn columns(&self, size: Size, bits: u32) -> Span {
         let x = self.corners.map(|c| c[0]);
-        [x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])]
+        let (low, high) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
+        first_sample(low, bits, size.width)..first_sample(high + 1, bits, size.width)
     }
 
     /// The covered columns of a row: a triangle is convex, so they are one span.
@@ -225,7 +219,7 @@ pub fn cover_only(
             continue;
         };
         // Many triangles of a fine mesh lie between two columns.
-        if setup.columns(0, size, bits).is_empty() {
+        if setup.columns(size, bits).is_empty() {
             continue;
         }
         let mut step = None;

@@ -56,7 +56,7 @@ pub fn timed(ray: &Ray, corners: [Point; 3]) -> Option<Bounded> {
 /// Of a kernel's triple product, over its value.
 fn relative_error(x: Point, [y, z]: [Point; 2]) -> f64 {
     let integers = 4.0 * U;
-    let sizes = [y, z].map(|v| largest(v));
+    let sizes = [y, z].map(largest);
     let sum: f64 = x.iter().map(|c| f64::from(c.abs())).sum();
     let error = VOLUME_ERROR * sum * sizes[0] * sizes[1];
     let value = triple(x, y, z).unsigned_abs() as f64;

@@ -80,7 +80,9 @@ impl Lattice {
         for axis in 0..3 {
             let steps = libm::scalbn(point[axis] - self.centre[axis], -self.exponent);
             let nearest = libm::floor(steps + 0.5);
-            if !(nearest.abs() <= f64::from(REACH)) {
+            // NaN is within nothing.
+            let within = nearest.abs() <= f64::from(REACH);
+            if !within {
                 return None;
             }
             #[expect(clippy::cast_possible_truncation, reason = "within REACH")]

@@ -99,7 +99,7 @@ proptest! {
     fn occupied((_, grid) in grids()) {
         let words = bricks(&grid.axes, &grid.offsets);
         let [x, y, z] = brick_counts(&grid.axes);
-        prop_assert_eq!(words.len() as u32, x * y * z);
+        prop_assert_eq!(words.len(), (x * y * z) as usize);
         let set: u32 = words.iter().flatten().map(|word| word.count_ones()).sum();
         let mut full = 0;
         for cell in all_cells(&grid.axes) {

@@ -73,7 +73,7 @@ impl<'a> Kernel<'a> {
             return None;
         }
         let mut ns = [0; 3];
-        for axis in 0..3 {
+        for (axis, n) in ns.iter_mut().enumerate() {
             let boundaries = self.grid.axes[axis].boundaries();
             let passed = match self.ray.direction[axis] {
                 0 => boundaries.partition_point(|b| *b <= self.ray.origin[axis]),
@@ -94,7 +94,7 @@ impl<'a> Kernel<'a> {
                 }
             };
             // At its very end the ray is still at the grid.
-            ns[axis] = passed
+            *n = passed
                 .checked_sub(1)
                 .filter(|n| *n <= self.cells(axis))?
                 .min(self.cells(axis) - 1);
@@ -157,14 +157,10 @@ fn crossings() {
     let mut loose = Loose::new(1);
     let mut most = 0.0_f64;
     for d in (1 << 23..1 << 24).step_by(4999) {
-        for way in [
-            f64::from(REACH) * 2.0,
-            12_345_678.0,
-            3.0 * f64::from(1 << 22) - 1.0,
-        ] {
+        for way in [2 * REACH, 12_345_678, 3 * (1 << 22) - 1] {
             let inverse = loose.div(1.0, d as f32);
             let time = f64::from(loose.mul(way as f32, inverse));
-            most = most.max((time * f64::from(d) - way).abs());
+            most = most.max((time * f64::from(d) - f64::from(way)).abs());
         }
     }
     assert!((3.0..7.02).contains(&most), "{most}");

@@ -21,6 +21,7 @@ fn sphere() -> impl Strategy<Value = Blockers> {
                 f64::from(j) / f64::from(down) * std::f64::consts::PI,
             );
             let direction = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
+            #[expect(clippy::cast_possible_truncation, reason = "at most 4e6")]
             [0, 1, 2].map(|axis| (direction[axis] * size[axis]).round() as i32)
         };
         let row = |i: u32, j: u32| j * around + i % around;

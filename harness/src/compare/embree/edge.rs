@@ -26,7 +26,10 @@ pub(super) fn flat_edges(spec: &Primitives, prim: u32, point: [i64; 2]) -> [i64;
 
 #[cfg(test)]
 mod tests {
-    use super::is_edge;
+    use triptych_spec::scene::Size;
+    use triptych_spec::vertex::Primitives;
+
+    use super::{flat_edges, is_edge};
 
     #[test]
     fn the_threshold_is_exact() {
@@ -44,5 +47,27 @@ mod tests {
         assert!(!is_edge([0, -1000, 3000]), "beyond the end of edge 0");
         assert!(is_edge([0, 1000, 3000]), "on edge 0");
         assert!(is_edge([0, 0, 0]), "on a triangle without area");
+    }
+
+    #[test]
+    fn without_area_edge_functions_sum_to_nothing() {
+        let spec = Primitives {
+            size: Size {
+                width: 1,
+                height: 1,
+            },
+            bits: 8,
+            snapped: vec![[9, 9, 0], [1, 2, 0], [4, 8, 0], [3, 6, 0]],
+            prims: vec![[0, 1, 2], [1, 2, 3]],
+            source: vec![0, 1],
+        };
+        assert_eq!(
+            flat_edges(&spec, 1, [5, 3]),
+            [7, 14, -21],
+            "beside its line"
+        );
+        for on_line in [[2, 4], [3, 6], [50, 100]] {
+            assert_eq!(flat_edges(&spec, 1, on_line), [0; 3], "{on_line:?}");
+        }
     }
 }

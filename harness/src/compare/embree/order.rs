@@ -62,6 +62,8 @@ mod tests {
     fn runs_are_joined_by_overlap_and_steps_must_rise() {
         let tie = [(0.0, 4.0, 3.0), (3.0, 7.0, 2.0), (6.0, 9.0, 1.0)];
         assert_eq!(list(&tie), (0, 0, vec![]), "one run, any order");
+        let touching = [(0.0, 1.0, 2.0), (1.0, 2.0, 1.0)];
+        assert_eq!(list(&touching), (0, 0, vec![]), "both may have the key 1");
         let rising = [(0.0, 1.0, 1.0), (2.0, 3.0, 2.0), (4.0, 5.0, 3.0)];
         assert_eq!(list(&rising), (2, 0, vec![]), "two steps");
         let falling = [(0.0, 1.0, 1.0), (2.0, 3.0, 3.0), (4.0, 5.0, 2.0)];

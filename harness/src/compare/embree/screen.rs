@@ -30,18 +30,16 @@ pub(super) struct Candidate {
 impl Screen<'_> {
     /// The rows and columns outside of which a triangle makes no pair.
     ///
-    /// Where no edge function is below [`least`], barycentric coordinates are at least
-    /// least / area: that is the triangle scaled about its centre by 1 - 3 least / area. A
-    /// corner lies at most two thirds of the width from there.
+    /// In class edge, barycentric coordinates are at least -2^-22 (1 + 2^-19). So a sample
+    /// there is beyond the corners by at most twice that of a width of 2^20 sub-pixels, which
+    /// is less than one: it is not beyond them, as both are whole numbers.
     fn extent(&self, setup: &Setup) -> [Span; 2] {
         let Primitives { size, bits, .. } = *self.spec;
         let rows = setup.rows(size, bits);
         if rows.is_empty() {
             return [0..0, 0..0];
         }
-        let [low, high] = setup.width();
-        let beyond = -2 * least(setup) * (high - low) / setup.area + 1;
-        let columns = setup.columns(beyond, size, bits);
+        let columns = setup.columns(size, bits);
         // Most triangles of a fine mesh have one sample about, and miss it.
         let single = rows.len() == 1 && columns.len() == 1;
         if columns.is_empty() || single && !self.meets(setup, columns.start, rows.start) {

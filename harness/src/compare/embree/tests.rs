@@ -1,7 +1,9 @@
 //! The comparer on scenes whose answer is known.
 
+mod counts;
 mod planted;
 mod rays;
+mod reach;
 mod world;
 
 use triptych_spec::raster::{Setup, cover, sample};
@@ -132,7 +134,7 @@ fn corners_on_samples_are_in_class_edge() {
     assert_eq!(vote.disagreeing(), 0, "{vote}");
     assert!(vote.edge > 300, "{vote}");
     assert!(
-        vote.edge_agreeing < vote.edge,
+        (1..vote.edge).contains(&vote.edge_agreeing),
         "the fill rule is the spec's own: {vote}"
     );
 }
@@ -145,7 +147,7 @@ fn slivers_agree_where_single_precision_can_tell() {
     assert!(vote.depths > 5_000, "{vote}");
     assert!(vote.unresolved > 50, "{vote}");
     assert!(
-        vote.unresolved_agreeing < vote.unresolved,
+        (1..vote.unresolved).contains(&vote.unresolved_agreeing),
         "the class is needed: {vote}"
     );
     assert!(

@@ -154,8 +154,14 @@ impl Scene {
 
     fn time(&self, prim: u32) -> f32 {
         let time = timed(&self.rays[0], self.blockers.corners(prim)).expect("it is met");
-        time.value as f32
+        single(time.value)
     }
+}
+
+fn single(time: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "what a kernel would give")]
+    let single = time as f32;
+    single
 }
 
 fn hit(prim: u32, time: f32) -> Hit {
@@ -184,7 +190,7 @@ fn answers_are_held_against_the_spec() {
     caused(&closest([hit(1, second), miss]), &[(Cause::DepthKey, 1)]);
     caused(&closest([miss, miss]), &[(Cause::Coverage, 1)]);
     let bound = timed(&scene.rays[0], scene.blockers.corners(0)).expect("it is met");
-    let off = |times: f64| (bound.value + times * bound.bound) as f32;
+    let off = |times: f64| single(bound.value + times * bound.bound);
     caused(&closest([hit(0, off(0.9)), miss]), &[]);
     caused(&closest([hit(0, off(2.0)), miss]), &[(Cause::Interval, 1)]);
     let error = closest([hit(0, off(0.9)), miss]).error_over_bound;

@@ -156,3 +156,6 @@ fn part(a: [f64; 3], b: [f64; 3], half: [f64; 2]) -> Option<[f64; 2]> {
     }
     (first <= last).then_some([first, last])
 }
+
+#[cfg(test)]
+mod tests;

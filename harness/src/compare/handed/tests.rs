@@ -5,7 +5,7 @@ use triptych_spec::raster::{Fragment, cover};
 use triptych_spec::scene::{Scene, Size, Triangle, Vertex};
 use triptych_spec::vertex::{clip, snap, transform};
 
-use super::{HALF, Handed, reach};
+use super::{Columns, HALF, Handed, Pairs, Place, reach};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 
@@ -142,6 +142,79 @@ fn what_cannot_be_judged_is_counted() {
         "{}",
         triangles.note
     );
+    assert_eq!(triangles.skipped, None, "others are judged");
+    let none = Handed {
+        size: SIZE,
+        triangles: Vec::new(),
+        places: vec![Place::Unjudged; 6],
+    };
+    let [pairs, triangles] = none.judge(&driver(&scene));
+    assert_eq!((pairs.unit, pairs.compared), ("empty pixels", 48 * 32));
+    assert_eq!((triangles.admitted, triangles.compared), (6, 6));
+    assert_eq!(triangles.skipped, Some(triangles.note));
+}
+
+/// Of the columns of a row in 10, where 2 to 8 may be and 4 and 5 must be covered.
+fn row(must: std::ops::Range<u32>, seen: &[u32]) -> Judgement {
+    let columns = Columns {
+        may: 2..9,
+        must,
+        lengths: [0.0; 2],
+    };
+    let mut pairs = Pairs::new(10);
+    pairs.row(7, 3, &columns, seen);
+    pairs.finish(SIZE)
+}
+
+#[test]
+fn a_row_is_judged_column_by_column() {
+    let judgement = row(4..6, &[0, 3, 4, 8, 8]);
+    assert_eq!((judgement.compared, judgement.admitted), (8, 5));
+    assert_eq!(
+        (judgement.skipped, judgement.admitted_budget),
+        (None, Some(1.0))
+    );
+    let note = "MAY: 5 of 8 pairs (62.50 %), 2 of these are covered";
+    assert_eq!(judgement.note, note, "3 and 8 are");
+    let differ = [
+        "coverage: pixel (5, 3) must be covered, is not, by triangle 7",
+        "coverage: pixel (0, 3) must not be covered, is, by triangle 7",
+        "duplicate: pixel (8, 3) is covered more than once by triangle 7",
+    ];
+    assert_eq!(judgement.described, differ);
+    let marks = [
+        (35, Cause::Coverage),
+        (30, Cause::Coverage),
+        (38, Cause::Duplicate),
+    ];
+    assert_eq!(judgement.marks, marks);
+}
+
+#[test]
+fn a_row_that_may_go_either_way_is_not_judged_unless_it_differs() {
+    let all = "all 7 pairs may go either way";
+    assert_eq!(row(4..4, &[2, 3]).skipped.as_deref(), Some(all));
+    assert_eq!(row(4..5, &[4]).skipped, None, "4 must be covered");
+    let twice = row(4..4, &[3, 3]);
+    assert_eq!((twice.differ(), twice.skipped), (1, None));
+}
+
+#[test]
+fn what_is_within_a_step_of_a_side_may_go_either_way() {
+    let mut scene = scene();
+    // A side a quarter of a pixel right of the samples of column 20.
+    let x = (20.75 - 24.0) / 24.0;
+    let corners = [[x, -0.9, 0.5], [x, 0.9, 0.5], [-0.9, 0.0, 0.5]];
+    for (vertex, position) in scene.vertices.iter_mut().zip(corners) {
+        vertex.position = position;
+    }
+    for (step, open) in [(0.5, true), (0.125, false)] {
+        let handed = Handed::new(&scene, step);
+        let Place::There(region) = &handed.places[0] else {
+            panic!("it is in view");
+        };
+        assert_eq!(region.columns(16, SIZE).is_open(20), open, "{step}");
+    }
 }
 
 /// Corners of w 2 and 4, in clip space and in pixels of a target whose middle is at (24, 16).

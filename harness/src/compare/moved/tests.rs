@@ -82,6 +82,19 @@ fn what_a_moved_surface_hides_is_counted() {
 }
 
 #[test]
+fn a_moved_surface_that_comes_or_goes_is_counted() {
+    let (there, gone) = (run([0, 0], Some(5), 9), run([0, 1], Some(5), NOTHING));
+    for (spec, own) in [(&there, &gone), (&gone, &there)] {
+        let judgement = judge(spec, own);
+        assert_eq!((judgement.differ(), judgement.admitted), (0, 1));
+        assert_eq!(judgement.compared, 2, "the list's fragment, the surface");
+        assert_eq!(judgement.skipped, None, "the fragment is judged");
+        let words = "1 come or go, 0 have another key";
+        assert!(judgement.note.contains(words), "{}", judgement.note);
+    }
+}
+
+#[test]
 fn what_did_not_move_must_be_the_same() {
     let spec = run([0, 0], Some(5), 9);
     let cases = [
@@ -99,4 +112,13 @@ fn what_did_not_move_must_be_the_same() {
     twice.sorted.fragments.push(twice.sorted.fragments[0]);
     assert_eq!(judge(&spec, &twice).causes, [(Cause::Duplicate, 1)].into());
     assert_eq!(judge(&twice, &twice).differ(), 0);
+    let none = run([0, 0], None, 9);
+    assert_eq!(judge(&none, &spec).causes, [(Cause::Coverage, 1)].into());
+    // A fragment of the other triangle, too.
+    let mut both = run([0, 0], Some(5), 9);
+    both.sorted.fragments.push(Fragment {
+        prim: 1,
+        ..both.sorted.fragments[0]
+    });
+    assert_eq!(judge(&both, &spec).causes, [(Cause::LostNode, 1)].into());
 }

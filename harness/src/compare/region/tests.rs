@@ -2,7 +2,7 @@
 
 use triptych_spec::scene::Size;
 
-use super::Region;
+use super::{Columns, Region, hull};
 
 /// Half side of the squares, in pixels: a power of two, so that all here is exact.
 const R: f64 = 0.25;
@@ -149,4 +149,62 @@ fn what_cannot_be_judged_is_no_region() {
     let fine = [[0.0, 0.0], [5.0, 0.0], [0.0, 1.0]];
     assert_eq!(Region::new(&fine, 1e9), None, "a reach without end");
     assert_eq!(Region::new(&[], R), None, "no corner");
+}
+
+fn region(corners: &[[f64; 2]]) -> Region {
+    Region::new(corners, R).expect("it is small")
+}
+
+/// Beside a tip the sides' widened lines meet far out, but no corner can be there.
+#[test]
+fn no_sample_beyond_the_corners_squares_may_be_covered() {
+    let right = region(&[[1.0, 2.0], [9.0, 3.5], [1.0, 5.0]]);
+    assert_eq!(right.columns(3, SIZE).may, 1..9, "9.5 is beyond 9.25");
+    let left = region(&[[2.0, 3.5], [9.0, 2.0], [9.0, 5.0]]);
+    assert_eq!(left.columns(3, SIZE).may, 2..9, "1.5 is before 1.75");
+    let low = region(&[[2.0, 4.0], [7.0, 2.0], [7.0, 9.0]]);
+    assert_eq!(
+        low.rows(SIZE),
+        2..9,
+        "1.5 is above 1.75, and 9.5 below 9.25"
+    );
+    for row in [1, 9] {
+        assert_eq!(low.columns(row, SIZE), Columns::default(), "row {row}");
+    }
+}
+
+#[test]
+fn open_is_what_may_be_and_need_not_be_covered() {
+    let columns = region(&[[2.4, 0.0], [7.0, 0.0], [7.0, 9.0], [2.4, 9.0]]).columns(4, SIZE);
+    assert_eq!((columns.may.clone(), columns.must.clone()), (2..7, 3..7));
+    let open: Vec<u32> = (0..12).filter(|c| columns.is_open(*c)).collect();
+    assert_eq!(open, [2]);
+}
+
+/// Exactly as far from a side as its ends may move, a sample lies on it at worst.
+#[test]
+fn a_sample_at_the_reach_need_not_be_covered() {
+    // What a corner's rounding takes is in the reach.
+    let reach = R + 2.0 / 65536.0;
+    for (farther, must) in [(0.0, 3..7), (1.0 / 65536.0, 2..7)] {
+        let x = 2.5 - reach - farther;
+        let columns = region(&[[x, 0.0], [7.0, 0.0], [7.0, 9.0], [x, 9.0]]).columns(4, SIZE);
+        assert_eq!((columns.may, columns.must), (2..7, must), "{farther}");
+    }
+}
+
+#[test]
+fn nothing_of_a_row_beside_a_level_side_must_be_covered() {
+    let region = region(&[[2.0, 1.4], [7.0, 1.4], [7.0, 9.0], [2.0, 9.0]]);
+    let columns = region.columns(1, SIZE);
+    assert_eq!((columns.may, columns.must.is_empty()), (2..7, true));
+    assert_eq!(region.columns(2, SIZE).must, 2..7, "a row farther");
+}
+
+#[test]
+fn a_hull_has_no_corner_on_a_side() {
+    let square = [[0, 0], [4, 0], [4, 4], [0, 4]];
+    let more = [[2, 0], [4, 2], [3, 4], [0, 1], [1, 3], [4, 4]];
+    assert_eq!(hull([&more[..], &square].concat()), square);
+    assert_eq!(hull(vec![[1, 1], [3, 3], [2, 2]]), [[1, 1], [3, 3]]);
 }

@@ -47,7 +47,7 @@ impl Rule for Judge {
                 figures.moved = 1;
             }
             let admits = |k| self.error(axis, number.value, k) <= number.bound * SLACK;
-            if number.bound.is_infinite() || (admits(low) && admits(high)) {
+            if admits(low) && admits(high) {
                 figures.unbounded = 1;
                 continue;
             }

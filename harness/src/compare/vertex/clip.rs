@@ -98,7 +98,7 @@ pub fn outcomes(
 }
 
 /// Corners before they are snapped.
-struct Homogeneous;
+pub(super) struct Homogeneous;
 
 impl Rule for Homogeneous {
     type Corner = Position<f32>;

@@ -151,6 +151,7 @@ impl VertexReport {
         self.triangles += other.triangles;
         self.corners += other.corners;
         self.outside += other.outside;
+        self.cracks += other.cracks;
         self.differing += other.differing;
         self.admitted += other.admitted;
         self.told.extend(other.told);

@@ -2,6 +2,8 @@
 
 mod canaries;
 mod laws;
+mod reports;
+mod rules;
 mod scenes;
 mod twice;
 mod whole;
@@ -16,7 +18,7 @@ use super::clip::outcomes;
 use super::positions::exact;
 use super::*;
 use canaries::{DEFECTS, TRANSFORM, patched};
-use scenes::{BITS, hub_in_plane, last, random, through_planes};
+use scenes::{BITS, floor, hub_in_plane, last, random, through_planes};
 use whole::whole;
 
 /// Every Vulkan adapter; at least the two software drivers are set up.

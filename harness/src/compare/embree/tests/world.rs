@@ -135,3 +135,21 @@ fn a_distance_off_by_twice_the_bound_is_seen() {
     assert_eq!(vote.missed + vote.invented, 0, "{vote}");
     assert!(vote.depths_outside * 2 > clean.depths, "{vote}");
 }
+
+/// Rays that hit nothing.
+struct Nothing;
+
+impl RayHits for Nothing {
+    fn hits(&self, _: u32, _: u32, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
+        hits.clear();
+        Ok(())
+    }
+}
+
+#[test]
+fn without_triangles_no_part_of_their_area_is_near_an_edge() {
+    let mut loaded = load("raster/jittered-grid");
+    loaded.scene.triangles.clear();
+    let (vote, band) = vote(&loaded, &Nothing);
+    assert_eq!((vote.pairs, vote.disagreeing(), band), (0, 0, 0.0));
+}

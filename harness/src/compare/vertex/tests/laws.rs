@@ -170,6 +170,12 @@ fn a_missing_or_additional_polygon_is_reported() {
             report.told
         );
         assert_eq!(report.told[0].triangle, first, "{left} of {corners}");
+        let outside = if left == 1 || left == 2 {
+            left
+        } else {
+            corners
+        };
+        assert_eq!(report.outside, outside as u64, "{left} of {corners}");
     }
     let fewer = &run.positions[1..];
     for report in [
@@ -255,6 +261,12 @@ fn where_nothing_is_promised_nothing_is_judged_but_counted() {
         transform, clip, ..
     } = Judged::new(&scene, &run);
     assert_eq!(transform.unbounded, transform.vertices);
+    // Nor is it an error of anything to be elsewhere.
+    let elsewhere = compare_transform(&scene, &vec![[0.0; 4]; scene.vertices.len()]);
+    for report in [&transform, &elsewhere] {
+        let figures = (report.outside, report.error, report.error_over_bound);
+        assert_eq!(figures, (0, 0.0, 0.0));
+    }
     assert_eq!(clip.undecided + clip.decisions, clip.triangles, "{clip}");
     assert_eq!(clip.admitted, clip.triangles, "{clip}");
     let nothing = Scene {
