@@ -5,6 +5,7 @@
 
 mod device;
 mod stages;
+mod timed;
 
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::grid::lattice::Point;
@@ -12,6 +13,7 @@ use triptych_spec::grid::ray::Ray;
 
 pub use device::Device;
 pub use stages::Stages;
+pub use timed::{Shape, Span, Timed};
 
 /// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.
 pub const TILE: u32 = 1024;

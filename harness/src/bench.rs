@@ -20,11 +20,12 @@ pub mod counts;
 pub mod csv;
 pub mod error;
 mod gpu;
-mod grid;
+pub mod grid;
 pub mod legs;
 pub mod machine;
 pub mod markdown;
 mod progress;
+mod reference;
 mod run;
 mod scene;
 mod spec;
@@ -40,7 +41,7 @@ use serde::{Deserialize, Serialize};
 pub use ceiling::Ceilings;
 pub use machine::Machine;
 pub use progress::Progress;
-pub use run::{Options, Outcome, run};
+pub use run::{Options, Outcome, named, run};
 pub use spread::Spread;
 
 /// Rounds before the first that counts, at least.

@@ -217,6 +217,34 @@ pub fn draw(blockers: &Blockers, grid: &Grid, seed: u64, counts: &Rays) -> (Vec<
     (rays, ends)
 }
 
+/// Rays from one point in front of the grid through a raster of points in its middle, row by
+/// row: neighbours go alike.
+pub fn view(grid: &Grid, count: u32) -> Vec<Ray> {
+    let side = count.isqrt().max(1);
+    let [low, high] = [0, 1].map(|end| {
+        grid.axes.each_ref().map(|axis| {
+            let boundaries = axis.boundaries();
+            f64::from(boundaries[end * (boundaries.len() - 1)])
+        })
+    });
+    let at = |axis: usize, share: f64| low[axis] + (high[axis] - low[axis]) * share;
+    let eye = [
+        round(at(0, 0.5)),
+        round(at(1, 0.5)),
+        round(at(2, 1.1)).min(REACH),
+    ];
+    let through = |i: u32| {
+        let share = |n: u32| (f64::from(n) + 0.5) / f64::from(side);
+        let (column, row) = (i % side, i / side % side);
+        let point = [at(0, share(column)), at(1, share(row)), at(2, 0.5)].map(round);
+        Ray {
+            segment: false,
+            ..Ray::between(eye, point)
+        }
+    };
+    (0..count).map(through).collect()
+}
+
 fn round(x: f64) -> i32 {
     #[expect(clippy::cast_possible_truncation, reason = "saturates")]
     let integer = x.round() as i32;

@@ -9,7 +9,8 @@ use super::{Cells, exact};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
-use crate::kernel::{Kernel, Kernels, Pipeline};
+use crate::kernel::{Kernels, Pipeline};
+use crate::timer::Writes;
 
 /// Most workgroups along a dimension of a dispatch (WebGPU's default).
 const GROUPS: u32 = 65_535;
@@ -73,6 +74,12 @@ impl<'g> Device<'g> {
         self.cells.x * self.cells.y * self.cells.z
     }
 
+    /// Number of bricks.
+    pub fn bricks(&self) -> u32 {
+        let sides = [self.cells.x, self.cells.y, self.cells.z];
+        sides.into_iter().map(|cells| cells.div_ceil(4)).product()
+    }
+
     /// One invocation for each item.
     pub(super) fn each(
         &self,
@@ -91,6 +98,32 @@ impl<'g> Device<'g> {
         groups: u32,
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Duration, GpuError> {
+        let pass = self.ready_groups(entry, cells, groups, buffers)?;
+        let mut encoder = self.gpu.encoder();
+        pass.record(&mut encoder, None);
+        let start = Instant::now();
+        self.gpu.submit(encoder)?;
+        Ok(start.elapsed())
+    }
+
+    /// One invocation for each item, to be recorded.
+    pub(super) fn ready(
+        &self,
+        entry: &str,
+        cells: Cells,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Ready, GpuError> {
+        self.ready_groups(entry, cells, cells.items.div_ceil(WORKGROUP), buffers)
+    }
+
+    /// So many workgroups, to be recorded.
+    pub(super) fn ready_groups(
+        &self,
+        entry: &str,
+        cells: Cells,
+        groups: u32,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Ready, GpuError> {
         let kernel = self.kernels.compute(self.gpu, "grid", entry)?;
         let uniform = self.gpu.uniform("cells", &cells)?;
         let mut all = vec![
@@ -100,12 +133,14 @@ impl<'g> Device<'g> {
             ("unfinished", &self.unfinished),
         ];
         all.extend_from_slice(buffers);
-        let group = kernel.bind(self.gpu, &all);
-        let mut encoder = self.gpu.encoder();
-        record(&mut encoder, &kernel, &group, groups);
-        let start = Instant::now();
-        self.gpu.submit(encoder)?;
-        Ok(start.elapsed())
+        let Pipeline::Compute(pipeline) = &kernel.pipeline else {
+            unreachable!("grids have compute kernels only");
+        };
+        Ok(Ready {
+            group: kernel.bind(self.gpu, &all),
+            pipeline: pipeline.clone(),
+            groups,
+        })
     }
 
     /// What kernels left to be done, which is nothing afterwards.
@@ -142,21 +177,25 @@ impl<'g> Device<'g> {
     }
 }
 
-/// Records a pass of its own: what it writes is there for the next.
-fn record(
-    encoder: &mut wgpu::CommandEncoder,
-    kernel: &Kernel,
-    group: &wgpu::BindGroup,
+/// A dispatch that can be recorded any number of times.
+pub(super) struct Ready {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
     groups: u32,
-) {
-    let Pipeline::Compute(pipeline) = &kernel.pipeline else {
-        unreachable!("grids have compute kernels only");
-    };
-    if groups == 0 {
-        return;
+}
+
+impl Ready {
+    /// Records a pass of its own: what it writes is there for the next.
+    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, writes: Option<Writes<'_>>) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: writes.map(Writes::compute),
+        });
+        if self.groups > 0 {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.group, &[]);
+            let rows = self.groups.div_ceil(GROUPS);
+            pass.dispatch_workgroups(self.groups.min(GROUPS), rows, 1);
+        }
     }
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
-    pass.dispatch_workgroups(groups.min(GROUPS), groups.div_ceil(GROUPS), 1);
 }

@@ -23,6 +23,8 @@ pub struct Stages<'g> {
     bricks: wgpu::Buffer,
     /// Time on the device of what ran last, without transfers.
     pub time: Duration,
+    /// Dispatches of the last search, until its rays were done.
+    pub dispatches: u32,
 }
 
 impl<'g> Stages<'g> {
@@ -32,8 +34,7 @@ impl<'g> Stages<'g> {
     /// Limits by name, and whatever the device reports.
     pub fn new(device: Device<'g>) -> Result<Self, GpuError> {
         let (gpu, total) = (device.gpu, u64::from(device.total()));
-        let bricks = [device.cells.x, device.cells.y, device.cells.z].map(|n| n.div_ceil(4));
-        let bricks: u64 = bricks.into_iter().map(u64::from).product();
+        let bricks = u64::from(device.bricks());
         Ok(Self {
             counts: gpu.storage("counts of cells", 4 * total)?,
             offsets: gpu.storage("offsets of cells", 4 * (total + 1))?,
@@ -41,6 +42,7 @@ impl<'g> Stages<'g> {
             bricks: gpu.storage("bricks", 8 * bricks)?,
             device,
             time: Duration::ZERO,
+            dispatches: 0,
         })
     }
 
@@ -171,13 +173,8 @@ impl<'g> Stages<'g> {
 
     /// Stage `trace`: what each ray meets.
     pub fn trace(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
-        let [x, y, z] = [
-            self.device.cells.x,
-            self.device.cells.y,
-            self.device.cells.z,
-        ];
         let bricks = Cells {
-            items: x.div_ceil(4) * y.div_ceil(4) * z.div_ceil(4),
+            items: self.device.bricks(),
             ..self.device.cells
         };
         let buffers = [("offsets", &self.offsets), ("bricks", &self.bricks)];
@@ -201,13 +198,7 @@ impl<'g> Stages<'g> {
         let packed: Vec<Packed> = rays.iter().map(Packed::from).collect();
         let items = u32::try_from(rays.len()).expect("at most RAYS");
         let rays = gpu.upload("rays", &packed)?;
-        let fresh = Hit {
-            prim: 0,
-            time: 0.0,
-            state: FRESH,
-            at: 0,
-        };
-        let hits = gpu.upload("hits", &vec![fresh; packed.len()])?;
+        let hits = gpu.upload("hits", &vec![fresh(); packed.len()])?;
         let buffers = [
             ("offsets", &self.offsets),
             ("prims", &self.prims),
@@ -220,7 +211,9 @@ impl<'g> Stages<'g> {
             any: (query == Query::Any).into(),
             ..self.device.cells
         };
+        self.dispatches = 0;
         for _ in 0..self.rounds() {
+            self.dispatches += 1;
             self.time += self.device.each("trace", cells, &buffers)?;
             if self.device.take_unfinished()? == 0 {
                 break;
@@ -234,5 +227,15 @@ impl<'g> Stages<'g> {
                 stage: "trace",
             }),
         }
+    }
+}
+
+/// A ray that has not started.
+pub(super) fn fresh() -> Hit {
+    Hit {
+        prim: 0,
+        time: 0.0,
+        state: FRESH,
+        at: 0,
     }
 }

@@ -9,7 +9,7 @@ use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::abuffer::Lists;
 
 use super::error::Error;
-use super::grid::Grid;
+use super::reference::Grid;
 use super::scene::Measured;
 use super::{AWAKE, Method};
 use crate::compare::compare;

@@ -1,96 +1,55 @@
-//! What the spec says on one sub-pixel grid: the pictures that are compared with.
+//! Grids: how fast they are built, and how fast rays go through them, against the resolution,
+//! the scene and the kind of rays; beside Embree and a Rust BVH.
+//!
+//! From the same triangles and rays on the lattice: the spec on one core; Embree's single rays
+//! and `obvhs`' eight-wide tree, each on one core and on all; and every adapter. A *build* is
+//! everything from corners to sorted lists and bricks (of a tree, to the tree). Not timed:
+//! transfers, compilation, drawing rays. Rounds run all of a scene in turn, every other one
+//! backwards; [`WARM_UP`](super::WARM_UP) rounds come before the first that counts.
+//!
+//! An adapter is measured only if it meets what the spec does with every ray: its any hits are
+//! the spec's, so are its closest hits up to their bounds.
 
-use triptych_spec::abuffer::{nearest_layers, resolve};
-use triptych_spec::bound::Bounded;
-use triptych_spec::scene::Scene;
-use triptych_spec::vertex::primitives;
+mod cpu;
+mod gpu;
+mod run;
 
-use super::counts::Counts;
-use super::error::{Error, psnr};
-use crate::observe::{Observed, Spec};
-use crate::plan::Plan;
-use crate::replay::spec::SpecRun;
+use super::legs::{Legs, Row};
 
-/// The spec's picture, with bounds.
-type Picture = Observed<Spec, Vec<[Bounded; 3]>>;
+pub use run::{Options, run};
 
-/// The spec on one grid.
-pub(super) struct Grid {
-    pub(super) run: SpecRun,
-    pub(super) counts: Counts,
-    /// The numbers of layers that are measured.
-    pub(super) layers: Vec<u32>,
-    /// The picture of so many nearest layers, where that is not the exact one.
-    pictures: Vec<(u32, Picture)>,
-    exact: Picture,
+/// The scenes that are measured if none is asked for: a closed mesh of small triangles, one of
+/// 202,520, large beside small ones, and needles.
+pub const SCENES: [&str; 4] = ["grid/bunny", "grid/dragon", "grid/sponza", "grid/furball"];
+
+/// Cells along each axis, over those that the scene decides.
+pub const SCALES: [f64; 3] = [0.5, 1.0, 2.0];
+
+/// Rays of a kind: enough to fill a board for milliseconds.
+pub const RAYS: u32 = 1 << 20;
+
+/// Of these, what legs on a CPU trace in a round.
+pub const RAYS_OF_CPU: usize = 1 << 15;
+
+/// What the page says of how it was measured.
+pub const HOW: &str = "Medians of rounds after two to warm up, with minimum and maximum; a round runs all legs \
+    of a scene,\nevery other one backwards, and ratios are taken within a round. *build*: from corners to sorted lists \
+    and bricks,\nor to the tree, in triangles; *any* and *closest*: rays of a kind, in rays. From the same triangles \
+    and rays,\nwithout transfers and compilation; a software driver has all cores. *random*: segments between random\n\
+    points in and around the box; *aimed*: from such points at points on triangles, half of them segments;\n*view*: from \
+    one point through a raster, row by row.";
+
+/// The stem of the files.
+pub fn stem(legs: &Legs) -> String {
+    format!("grid-{}-{}", legs.date, legs.machine.slug)
 }
 
-impl Grid {
-    /// Runs the spec with all layers.
-    pub(super) fn new(scene: &Scene, plan: &Plan, bits: u32) -> Result<Self, String> {
-        let mut run = SpecRun::new(scene, primitives(scene, bits), plan)?;
-        Ok(Self {
-            counts: Counts::of(&run),
-            layers: Vec::new(),
-            pictures: Vec::new(),
-            exact: Observed::new("spec", std::mem::take(&mut run.image)),
-            run,
-        })
-    }
-
-    /// Draws the pictures of fewer layers.
-    pub(super) fn draw(&mut self, scene: &Scene, wanted: Option<&[u32]>) {
-        self.layers = layers(wanted, self.counts.longest());
-        let SpecRun {
-            primitives,
-            opaque,
-            lists,
-            ..
-        } = &self.run;
-        for n in self.layers.iter().filter(|n| **n < self.counts.longest()) {
-            let picture = resolve(scene, primitives, opaque, &nearest_layers(lists, *n));
-            self.pictures.push((*n, Observed::new("spec", picture)));
-        }
-    }
-
-    /// The picture of so many nearest layers.
-    pub(super) fn picture(&self, layers: u32) -> &Picture {
-        let drawn = self.pictures.iter().find(|(n, _)| *n == layers);
-        drawn.map_or(&self.exact, |(_, picture)| picture)
-    }
-
-    /// How far a picture is from the exact one.
-    pub(super) fn error(&self, seen: impl IntoIterator<Item = [f64; 3]>) -> Error {
-        psnr(&self.exact.value, seen)
-    }
-}
-
-/// The numbers of layers that are measured on lists of up to `longest`: those that are
-/// wanted, else 1, 2, 4, …; and all, of which there are not more.
-fn layers(wanted: Option<&[u32]>, longest: u32) -> Vec<u32> {
-    let powers = || {
-        (0..32)
-            .map(|i| 1 << i)
-            .take_while(|n| *n < longest)
-            .collect()
-    };
-    let mut layers: Vec<u32> = wanted.map_or_else(powers, <[u32]>::to_vec);
-    layers.iter_mut().for_each(|n| *n = longest.min(*n));
-    layers.push(longest);
-    layers.sort_unstable();
-    layers.dedup();
-    layers
-}
-
-#[cfg(test)]
-mod tests {
-    use super::layers;
-
-    #[test]
-    fn all_layers_are_always_among_them() {
-        assert_eq!(layers(None, 1), [1]);
-        assert_eq!(layers(None, 8), [1, 2, 4, 8]);
-        assert_eq!(layers(None, 13), [1, 2, 4, 8, 13]);
-        assert_eq!(layers(Some(&[20, 3, 3]), 13), [3, 13]);
-    }
+/// What a row is about.
+fn row(
+    taken: &super::legs::Taken,
+    scene: &str,
+    what: &str,
+    against: Option<&super::legs::Taken>,
+) -> Row {
+    taken.row(scene, what, against.map(|other| (other, None)))
 }

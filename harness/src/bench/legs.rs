@@ -23,9 +23,12 @@ mod run;
 mod stages;
 mod table;
 
+pub(super) use run::stations;
+pub(super) use stages::Station;
+
 use super::{Machine, Spread};
 
-pub use files::{csv, page};
+pub use files::{csv, page, page_of};
 pub use run::{Options, run};
 pub use table::lines;
 
@@ -63,8 +66,8 @@ pub struct Legs {
 pub struct Row {
     /// `family/case`.
     pub scene: String,
-    /// `cover`, `build` or `hits`.
-    pub what: &'static str,
+    /// `cover`, `build` or `hits`; of grids `build`, or how rays of which kind are traced.
+    pub what: String,
     /// `spec`, `gpu@adapter/fragment`, or how Embree was asked.
     pub leg: String,
     /// Whose clock: `device` or `host`.
@@ -103,15 +106,15 @@ impl Against {
 }
 
 /// What a leg took, round by round.
-struct Taken {
+pub(super) struct Taken {
     leg: String,
     clock: &'static str,
     items: u64,
-    seconds: Vec<f64>,
+    pub(super) seconds: Vec<f64>,
 }
 
 impl Taken {
-    fn new(leg: impl Into<String>, clock: &'static str, items: u64) -> Self {
+    pub(super) fn new(leg: impl Into<String>, clock: &'static str, items: u64) -> Self {
         Self {
             leg: leg.into(),
             clock,
@@ -127,10 +130,15 @@ impl Taken {
         Spread::of(pairs.map(|(own, others)| own / others * items))
     }
 
-    fn row(&self, scene: &str, what: &'static str, against: Option<(&Self, Option<f64>)>) -> Row {
+    pub(super) fn row(
+        &self,
+        scene: &str,
+        what: &str,
+        against: Option<(&Self, Option<f64>)>,
+    ) -> Row {
         Row {
             scene: scene.to_owned(),
-            what,
+            what: what.to_owned(),
             leg: self.leg.clone(),
             clock: self.clock,
             items: self.items,
@@ -145,7 +153,7 @@ impl Taken {
 }
 
 /// The order in which a round runs so many things: every other one backwards.
-fn order(round: u32, count: usize) -> impl Iterator<Item = usize> {
+pub(super) fn order(round: u32, count: usize) -> impl Iterator<Item = usize> {
     let backwards = round % 2 == 1;
     (0..count).map(move |at| if backwards { count - 1 - at } else { at })
 }

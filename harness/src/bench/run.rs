@@ -130,7 +130,7 @@ pub fn run(
 
 /// The scenes of these names. Of those that a corpus lacks, as a bundle's may, it is said
 /// once in the remarks that they were not measured.
-pub(super) fn named(corpus: &[Entry], names: &[&str], remarks: &mut Vec<String>) -> Vec<Entry> {
+pub fn named(corpus: &[Entry], names: &[&str], remarks: &mut Vec<String>) -> Vec<Entry> {
     let mut found = Vec::new();
     for name in names {
         let words = format!("not measured: {name}: not in this corpus");

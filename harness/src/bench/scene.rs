@@ -12,7 +12,7 @@ use triptych_spec::vertex::SUBPIXEL_BITS;
 use super::counts::Work;
 use super::error::Error;
 use super::gpu::{Leg, Refusal};
-use super::grid::Grid;
+use super::reference::Grid;
 use super::run::{Bound, Options};
 use super::spec::Core;
 use super::warm::warm_up;

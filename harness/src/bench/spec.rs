@@ -9,7 +9,7 @@ use triptych_spec::scene::Scene;
 use super::Method;
 use super::counts::Work;
 use super::error::Error;
-use super::grid::Grid;
+use super::reference::Grid;
 use super::scene::Measured;
 use crate::plan::Plan;
 use crate::replay::spec::timed;

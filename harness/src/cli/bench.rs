@@ -1,6 +1,7 @@
 //! `triptych bench`.
 
 pub(super) mod abuffer;
+mod grid;
 mod legs;
 mod stress;
 
@@ -11,6 +12,8 @@ use super::Verdict;
 pub enum Bench {
     /// Time against error: the nearest 1, 2, 4, … layers of each pixel
     Abuffer(abuffer::Args),
+    /// Grids: builds and rays against resolution, beside Embree and a BVH
+    Grid(grid::Args),
     /// Leg against leg: the spec beside adapters, the Embree leg beside bare calls
     Legs(legs::Args),
     /// What holds at the extremes, and by how much
@@ -21,6 +24,7 @@ pub enum Bench {
 pub fn run(bench: &Bench) -> anyhow::Result<Verdict> {
     match bench {
         Bench::Abuffer(args) => abuffer::run(args),
+        Bench::Grid(args) => grid::run(args),
         Bench::Legs(args) => legs::run(args),
         Bench::Stress(args) => stress::run(args),
     }

@@ -19,7 +19,7 @@ use crate::plan::GridPlan;
 use crate::registry::{Chain, stages_of};
 use crate::row::Class;
 pub use gpu::GridLeg;
-pub use spec::GridRun;
+pub use spec::{GridRun, blockers};
 
 impl Run<'_> {
     /// The spec by itself, then every adapter.

@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 14] = [
+const ORDER: [&str; 19] = [
     "leg",
     "all",
     "expect",
@@ -23,6 +23,11 @@ const ORDER: [&str; 14] = [
     "build",
     "sort",
     "resolve",
+    "count",
+    "scan",
+    "fill",
+    "link",
+    "trace",
     "end to end",
     "plan",
 ];

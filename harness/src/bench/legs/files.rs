@@ -49,7 +49,7 @@ fn values(row: &Row, runs: u32) -> [String; VALUES.len()] {
     };
     [
         quoted(&row.scene).into_owned(),
-        row.what.to_owned(),
+        quoted(&row.what).into_owned(),
         row.items.to_string(),
         quoted(&row.leg).into_owned(),
         runs.to_string(),
@@ -70,14 +70,21 @@ fn values(row: &Row, runs: u32) -> [String; VALUES.len()] {
 
 /// The page.
 pub fn page(legs: &Legs) -> String {
-    let mut lines = vec![format!("# Leg against leg, {}", legs.date), String::new()];
+    page_of(legs, "Leg against leg", &how(legs.runs))
+}
+
+/// The page of what was measured in the same form, with its title and how it was measured.
+pub fn page_of(legs: &Legs, title: &str, how: &str) -> String {
+    let mut lines = vec![format!("# {title}, {}", legs.date), String::new()];
     lines.extend(markdown::machine(&legs.machine));
     lines.extend(legs.remarks.iter().map(|r| format!("- {}", text(r))));
     lines.push(String::new());
-    lines.extend(how(legs.runs).lines().map(str::to_owned));
+    lines.extend(how.lines().map(str::to_owned));
     lines.push(String::new());
-    lines.push(format!("**{}.**", verdict(legs)));
-    lines.push(String::new());
+    if let Some(verdict) = verdict(legs) {
+        lines.push(format!("**{verdict}.**"));
+        lines.push(String::new());
+    }
     lines.push(format!("| {} |", COLUMNS.join(" | ")));
     lines.push("|---|---|---|---|---:|---:|---:|---|".to_owned());
     let row = |row: &Row| format!("| {} |", cells(row).map(|cell| text(&cell)).join(" | "));

@@ -113,7 +113,10 @@ fn layers() -> Result<Loaded, String> {
 }
 
 /// The adapters with their kernels and clocks.
-fn stations<'a>(adapters: &'a [Adapter], remarks: &mut Vec<String>) -> Vec<Station<'a>> {
+pub(in crate::bench) fn stations<'a>(
+    adapters: &'a [Adapter],
+    remarks: &mut Vec<String>,
+) -> Vec<Station<'a>> {
     let mut stations = Vec::new();
     for adapter in adapters {
         let kernels = Kernels::trusted(false, |sources| sources);

@@ -24,10 +24,20 @@ const NAMES: [&str; 2] = ["cover", "build"];
 const RIVAL: &str = "llvmpipe";
 
 /// An adapter with the kernels that are timed, and the clock that can be believed.
-pub(super) struct Station<'a> {
-    pub(super) adapter: &'a Adapter,
-    pub(super) kernels: Kernels,
-    pub(super) clock: Clock,
+pub(in crate::bench) struct Station<'a> {
+    pub(in crate::bench) adapter: &'a Adapter,
+    pub(in crate::bench) kernels: Kernels,
+    pub(in crate::bench) clock: Clock,
+}
+
+impl Station<'_> {
+    /// Whose clock, as rows name it.
+    pub(in crate::bench) fn clock_name(&self) -> &'static str {
+        match self.clock {
+            Clock::Device => "device",
+            Clock::Host(_) => "host",
+        }
+    }
 }
 
 /// The triangles on one sub-pixel grid, and how many fragments each stage must have.

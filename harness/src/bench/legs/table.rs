@@ -43,12 +43,12 @@ fn demand(against: &Against) -> String {
     against.most.map_or_else(String::new, words)
 }
 
-/// What all demands come to, in a line.
-pub(super) fn verdict(legs: &Legs) -> String {
+/// What all demands come to, in a line; `None` if there are none.
+pub(super) fn verdict(legs: &Legs) -> Option<String> {
     let against = legs.rows.iter().filter_map(|row| row.against.as_ref());
     let met: Vec<bool> = against.filter_map(Against::met).collect();
     let yes = met.iter().filter(|met| **met).count();
-    format!("{yes} of {} demands are met", met.len())
+    (!met.is_empty()).then(|| format!("{yes} of {} demands are met", met.len()))
 }
 
 /// Lines for a terminal.
@@ -56,6 +56,6 @@ pub fn lines(legs: &Legs) -> Vec<String> {
     let mut table = vec![COLUMNS.map(str::to_owned)];
     table.extend(legs.rows.iter().map(cells));
     let mut lines: Vec<String> = aligned(&table, 3).collect();
-    lines.push(verdict(legs));
+    lines.extend(verdict(legs));
     lines
 }

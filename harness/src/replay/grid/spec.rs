@@ -129,7 +129,10 @@ fn runs(grid: &Grid) -> Runs<'_> {
 }
 
 /// A scene's triangles on the finest lattice that holds them and rays around them.
-fn blockers(loaded: &Loaded) -> Result<(Lattice, Blockers), String> {
+///
+/// # Errors
+/// A coordinate that is not finite, in one line.
+pub fn blockers(loaded: &Loaded) -> Result<(Lattice, Blockers), String> {
     let points = loaded.world.points(&loaded.scene);
     let triangles: Vec<[u32; 3]> = loaded.scene.triangles.iter().map(|t| t.vertices).collect();
     let used = || triangles.iter().flatten().map(|v| points[*v as usize]);

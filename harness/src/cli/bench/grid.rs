@@ -1,0 +1,84 @@
+//! `triptych bench grid`.
+
+use std::io::Write;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use super::super::adapters::OnAdapters;
+use super::super::run_info::today;
+use super::super::scenes::Scenes;
+use super::super::{Verdict, reports};
+use crate::bench::grid::{HOW, Options, SCENES, run as measure, stem};
+use crate::bench::legs::{Legs, csv, lines, page_of};
+use crate::bench::{Progress, named};
+use crate::corpus;
+use crate::output::stdout;
+use crate::text::clean;
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  \
+    triptych bench grid                       four real meshes, every adapter\n  \
+    triptych bench grid dragon --adapter nvidia --rays 4194304\n\n\
+    Exit code 0 whatever is measured: a benchmark judges no machine. 2: nothing could be measured.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; without one four real meshes")))]
+pub struct Args {
+    #[command(flatten)]
+    scenes: Scenes,
+    #[command(flatten)]
+    on: OnAdapters,
+    /// Rounds that count, after two to warm up
+    #[arg(long, value_name = "N", default_value = "15")]
+    runs: NonZeroU32,
+    /// Rays of a kind on boards; CPUs and software drivers trace at most 32,768 of them
+    #[arg(long, value_name = "N", default_value_t = Options::RAYS,
+        value_parser = clap::value_parser!(u32).range(1..=4_194_304))]
+    rays: u32,
+    /// Where Markdown and CSV go [default: reports/out/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let corpus = corpus::list(&corpus::root())?;
+    let mut remarks = Vec::new();
+    let scenes = match args.scenes.if_any(&corpus)? {
+        Some(scenes) => scenes,
+        None => named(&corpus, &SCENES, &mut remarks),
+    };
+    let folder = args.out.clone().unwrap_or_else(reports::bench);
+    // The names of the files end with the machine's.
+    reports::can_write([&folder.join("grid")])?;
+    let adapters = args.on.usable()?.open;
+    let options = Options {
+        scenes,
+        runs: args.runs.get(),
+        rays: args.rays,
+        date: today(),
+    };
+    let measured = measure(&adapters, &options, &Progress::new());
+    let mut legs = measured.map_err(anyhow::Error::msg)?;
+    legs.remarks.extend(remarks);
+    let mut out = stdout();
+    for line in lines(&legs) {
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    for remark in &legs.remarks {
+        writeln!(out, "{}", clean(remark))?;
+    }
+    anyhow::ensure!(
+        !legs.rows.is_empty(),
+        "nothing was measured; see what was not, and why"
+    );
+    write(&folder, &legs)?;
+    Ok(Verdict::Agree)
+}
+
+fn write(folder: &Path, legs: &Legs) -> anyhow::Result<()> {
+    let page = page_of(legs, "Grids and rays", HOW);
+    for (end, text) in [("csv", csv(legs)), ("md", page)] {
+        let file = folder.join(format!("{}.{end}", stem(legs)));
+        reports::write(&file, &text)?;
+    }
+    writeln!(stdout(), "Results: {}", folder.display())?;
+    Ok(())
+}
