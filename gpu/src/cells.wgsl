@@ -26,8 +26,8 @@ struct Cells {
 // Boundaries on x, then y, then z; one more on each axis than cells.
 @group(0) @binding(1) var<storage, read> boundaries: array<f32>;
 
-// Nine numbers for each triangle.
-@group(0) @binding(2) var<storage, read> corners: array<f32>;
+// Three for each triangle; the fourth numbers are not used.
+@group(0) @binding(2) var<storage, read> corners: array<vec4<f32>>;
 
 // How far, in lattice steps, cells are widened (spec/src/grid/axis.rs).
 const WIDENED: f32 = 8.0;
@@ -49,8 +49,7 @@ fn number(cell: vec3<u32>) -> u32 {
 }
 
 fn corner(triangle: u32, i: u32) -> vec3<f32> {
-    let at = 9u * triangle + 3u * i;
-    return vec3(corners[at], corners[at + 1u], corners[at + 2u]);
+    return corners[3u * triangle + i].xyz;
 }
 
 // How many of `count` boundaries from `start` are below a coordinate, or at it.

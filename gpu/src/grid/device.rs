@@ -50,7 +50,8 @@ impl<'g> Device<'g> {
             limit: u32::MAX.into(),
         })?;
         let corners = (0..triangles).flat_map(|prim| blockers.corners(prim));
-        let corners: Vec<[f32; 3]> = corners.map(exact).collect();
+        let corners = corners.map(exact).map(|[x, y, z]| [x, y, z, 0.0]);
+        let corners: Vec<[f32; 4]> = corners.collect();
         let [x, y, z] = axes.each_ref().map(Axis::cells);
         Ok(Self {
             cells: Cells {

@@ -13,6 +13,7 @@
 mod cpu;
 mod gpu;
 mod run;
+mod scene;
 
 use super::legs::{Legs, Row};
 

@@ -220,19 +220,19 @@ impl Ground {
             file,
             ..
         } = &self.loaded;
+        let mut rows = Rows::new(name, family);
         if let (Some(spec), Some(section)) = (&self.grid, file.grid) {
-            let leg = GridLeg {
+            let capacity = section.capacity;
+            GridLeg {
                 adapter,
                 path,
                 spec,
-                capacity: section.capacity,
-            };
-            let mut rows = Rows::new(name, family);
-            leg.each(&mut rows)?;
+                capacity,
+            }
+            .each(&mut rows)?;
             return Ok(rows.rows);
         }
         let spec = &self.specs[&adapter.bits(path)];
-        let mut rows = Rows::new(name, family);
         if vertex {
             let leg = VertexLeg {
                 adapter,
