@@ -223,14 +223,8 @@ impl Ground {
         let mut rows = Rows::new(name, family);
         if let (Some(spec), Some(section)) = (&self.grid, file.grid) {
             let capacity = section.capacity;
-            GridLeg {
-                adapter,
-                path,
-                spec,
-                capacity,
-            }
-            .each(&mut rows)?;
-            return Ok(rows.rows);
+            let leg = GridLeg::new(adapter, path, spec, capacity);
+            return leg.each(&mut rows).map(|()| rows.rows);
         }
         let spec = &self.specs[&adapter.bits(path)];
         if vertex {

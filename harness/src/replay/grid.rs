@@ -88,12 +88,8 @@ impl Run<'_> {
             return Ok(());
         }
         let spec = self.grid_spec()?;
-        let leg = GridLeg {
-            adapter,
-            path,
-            spec: &spec,
-            capacity: self.loaded.file.grid.unwrap_or_default().capacity,
-        };
+        let capacity = self.loaded.file.grid.unwrap_or_default().capacity;
+        let leg = GridLeg::new(adapter, path, &spec, capacity);
         if let Err(error) = leg.run(&mut self.rows) {
             self.grid_refused(&label, &error);
         }

@@ -20,17 +20,30 @@ const DAMAGED: &str = "the device's own lists are damaged: see the stages before
 
 /// One GPU leg of one scene.
 pub struct GridLeg<'a> {
-    /// The adapter.
-    pub adapter: &'a Adapter,
+    adapter: &'a Adapter,
     /// With words or with native integers.
-    pub path: Path,
-    /// The spec's results.
-    pub spec: &'a Observed<Spec, GridRun>,
+    path: Path,
+    spec: &'a Observed<Spec, GridRun>,
     /// Entries of the first attempt.
-    pub capacity: Capacity,
+    capacity: Capacity,
 }
 
-impl GridLeg<'_> {
+impl<'a> GridLeg<'a> {
+    /// A leg that has not run.
+    pub fn new(
+        adapter: &'a Adapter,
+        path: Path,
+        spec: &'a Observed<Spec, GridRun>,
+        capacity: Capacity,
+    ) -> Self {
+        Self {
+            adapter,
+            path,
+            spec,
+            capacity,
+        }
+    }
+
     /// Adds a row for each stage from the spec's input, and one for all of them end to end.
     ///
     /// # Errors
