@@ -23,7 +23,7 @@ fn kinds_are_what_they_are_called() {
         ..Rays::default()
     };
     let (rays, ends) = draw(&blockers, &grid, 3, &counts);
-    assert_eq!(ends, [1000, 2000, 3000, 4000, 5000, 5200], "ends of kinds");
+    assert_eq!(ends, [250, 500, 750, 1000, 1250, 1450], "ends of kinds");
     let of = |i: usize| &rays[ends[i] - 200..ends[i]];
     // As many products of three sides as rays are 0 on the way through edges.
     let zeros = |ray: &Ray| {

@@ -81,7 +81,7 @@ pub struct Rays {
 
 impl Default for Rays {
     fn default() -> Self {
-        let count = Count(1000);
+        let count = Count(250);
         Self {
             random: count,
             aimed: count,
