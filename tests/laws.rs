@@ -39,6 +39,8 @@ mod loose;
 mod matrix;
 #[path = "laws/raster.rs"]
 mod raster;
+#[path = "laws/rsm.rs"]
+mod rsm;
 #[path = "laws/samples.rs"]
 mod samples;
 #[path = "laws/vertex.rs"]

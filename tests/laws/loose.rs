@@ -81,6 +81,22 @@ impl Loose {
         self.flush(x)
     }
 
+    /// `1 / sqrt(x)`, up to 2 units from the exact one.
+    pub fn inverse_sqrt(&mut self, x: f32) -> f32 {
+        let exact = 1.0 / f64::from(x).sqrt();
+        let mut result = nearest(exact);
+        let up = self.choose(2) == 0;
+        for _ in 0..self.choose(3) {
+            let further = if up { result.next_up() } else { result.next_down() };
+            // No more than two units in the last place, which are smallest below.
+            let unit = f64::from(result.next_down() - result).abs();
+            if (f64::from(further) - exact).abs() <= 2.0 * unit {
+                result = further;
+            }
+        }
+        result
+    }
+
     /// A sum in some order: from the left, from the right, or in pairs.
     pub fn sum(&mut self, terms: &[f32]) -> f32 {
         let Some((last, rest)) = terms.split_last() else {

@@ -88,7 +88,7 @@ impl View {
     /// lattice, which `f32` holds, and its only instance's matrix is the view's.
     pub fn scene(&self, model: &Model) -> Scene {
         let vertex = |point: &Point| Vertex {
-            #[expect(clippy::cast_precision_loss, reason = "at most 2^23, exact")]
+            // At most 2^23, exact.
             position: point.map(|c| c as f32),
             instance: 0,
         };
