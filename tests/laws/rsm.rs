@@ -169,6 +169,18 @@ fn volume([a, b, c]: [[i32; 3]; 3], d: [i32; 3]) -> i128 {
     cross(1, 2) * i128::from(d[0]) + cross(2, 0) * i128::from(d[1]) + cross(0, 1) * i128::from(d[2])
 }
 
+/// A pixel's point before it was moved off its face.
+fn unmoved(model: &Model, surface: &Surface, offset: u32) -> [i32; 3] {
+    let corners = model.corners(surface.triangle);
+    let normal = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|axis| volume(corners, axis));
+    let longest = normal.iter().map(|c| c.abs()).max().expect("three");
+    let axis = normal.iter().position(|c| c.abs() == longest).expect("of them");
+    let mut point = surface.point;
+    let way = i32::try_from(normal[axis].signum()).expect("a sign") * surface.side;
+    point[axis] -= way * offset.cast_signed();
+    point
+}
+
 /// Whether a surface faces a point, from its corners alone.
 fn facing(model: &Model, from: &Surface, to: [i32; 3]) -> bool {
     let d = [0, 1, 2].map(|i| to[i] - from.point[i]);
