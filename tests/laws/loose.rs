@@ -87,7 +87,11 @@ impl Loose {
         let mut result = nearest(exact);
         let up = self.choose(2) == 0;
         for _ in 0..self.choose(3) {
-            let further = if up { result.next_up() } else { result.next_down() };
+            let further = if up {
+                result.next_up()
+            } else {
+                result.next_down()
+            };
             // No more than two units in the last place, which are smallest below.
             let unit = f64::from(result.next_down() - result).abs();
             if (f64::from(further) - exact).abs() <= 2.0 * unit {

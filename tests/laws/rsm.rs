@@ -55,8 +55,7 @@ impl World {
     /// Laid on a lattice, after it has been moved and scaled.
     fn scene(&self, by: [i32; 3], power: i32) -> Scene {
         let scale = f64::from(power).exp2();
-        let place =
-            |p: [f64; 3]| [0, 1, 2].map(|axis| (p[axis] + f64::from(by[axis])) * scale);
+        let place = |p: [f64; 3]| [0, 1, 2].map(|axis| (p[axis] + f64::from(by[axis])) * scale);
         let points = self.triangles.iter().chain(&self.blockers).flatten();
         let points = points.map(|p| p.map(f64::from));
         let points = points.chain([self.eye.eye, self.light.eye]);
@@ -154,7 +153,9 @@ impl Scene {
 
 fn rows(triangles: usize) -> Vec<[u32; 3]> {
     let triangles = u32::try_from(triangles).expect("few");
-    (0..triangles).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()
+    (0..triangles)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect()
 }
 
 /// Two triangles.
@@ -174,7 +175,10 @@ fn unmoved(model: &Model, surface: &Surface, offset: u32) -> [i32; 3] {
     let corners = model.corners(surface.triangle);
     let normal = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|axis| volume(corners, axis));
     let longest = normal.iter().map(|c| c.abs()).max().expect("three");
-    let axis = normal.iter().position(|c| c.abs() == longest).expect("of them");
+    let axis = normal
+        .iter()
+        .position(|c| c.abs() == longest)
+        .expect("of them");
     let mut point = surface.point;
     let way = i32::try_from(normal[axis].signum()).expect("a sign") * surface.side;
     point[axis] -= way * offset.cast_signed();
@@ -230,7 +234,9 @@ fn triangle() -> impl Strategy<Value = Corners> {
 fn camera() -> impl Strategy<Value = Camera> {
     let projection = prop_oneof![
         (30.0..80.0_f64).prop_map(|fov| Projection::Perspective { fov }),
-        Just(Projection::Orthographic { height: 3.0 * f64::from(R) }),
+        Just(Projection::Orthographic {
+            height: 3.0 * f64::from(R)
+        }),
     ];
     let direction = (-20..=20_i32, 5..=30_i32, 10..=30_i32);
     (projection, direction, place(R / 8)).prop_map(|(projection, (x, y, z), target)| {
@@ -250,18 +256,27 @@ fn camera() -> impl Strategy<Value = Camera> {
 fn parameters() -> impl Strategy<Value = Parameters> {
     let kernel = (0..6_u32, 1..4_u32);
     let clamp = prop_oneof![Just(1), 1..=1_u64 << 40];
-    (kernel, 1..4_u32, 0..3_u32, 0..1_u32 << 24, clamp, 2..=32_u32, 0..1_u32 << 12).prop_map(
-        |((radius, stride), divisor, blur, bias, clamp, offset, edge)| Parameters {
-            radius,
-            stride,
-            divisor,
-            blur,
-            bias,
-            clamp,
-            offset,
-            edge,
-        },
+    (
+        kernel,
+        1..4_u32,
+        0..3_u32,
+        0..1_u32 << 24,
+        clamp,
+        2..=32_u32,
+        0..1_u32 << 12,
     )
+        .prop_map(
+            |((radius, stride), divisor, blur, bias, clamp, offset, edge)| Parameters {
+                radius,
+                stride,
+                divisor,
+                blur,
+                bias,
+                clamp,
+                offset,
+                edge,
+            },
+        )
 }
 
 fn size(most: u32) -> impl Strategy<Value = Size> {
@@ -280,23 +295,40 @@ fn worlds() -> impl Strategy<Value = World> {
     let strength = [0.0..4.0_f32, 0.0..4.0, 0.0..1e3];
     let cameras = (camera(), camera());
     let sizes = (size(8), size(9));
-    (loose, colours, blockers, strength, cameras, sizes, parameters()).prop_map(
-        move |(loose, mut colours, blockers, strength, (eye, light), (size, map), parameters)| {
-            let triangles = [floor.to_vec(), wall.to_vec(), loose].concat();
-            colours.truncate(triangles.len());
-            World {
-                blockers: blockers.unwrap_or_else(|| triangles.clone()),
-                triangles,
-                colours,
-                eye,
-                light,
-                size,
-                map,
-                strength,
-                parameters,
-            }
-        },
+    (
+        loose,
+        colours,
+        blockers,
+        strength,
+        cameras,
+        sizes,
+        parameters(),
     )
+        .prop_map(
+            move |(
+                loose,
+                mut colours,
+                blockers,
+                strength,
+                (eye, light),
+                (size, map),
+                parameters,
+            )| {
+                let triangles = [floor.to_vec(), wall.to_vec(), loose].concat();
+                colours.truncate(triangles.len());
+                World {
+                    blockers: blockers.unwrap_or_else(|| triangles.clone()),
+                    triangles,
+                    colours,
+                    eye,
+                    light,
+                    size,
+                    map,
+                    strength,
+                    parameters,
+                }
+            },
+        )
 }
 
 fn scenes() -> impl Strategy<Value = Scene> {

@@ -5,9 +5,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use triptych_spec::bound::Bounded;
-use triptych_spec::rsm::{
-    Colour, Frame, Light, Surface, Viewpoint, blur, compose, project, same,
-};
+use triptych_spec::rsm::{Colour, Frame, Light, Surface, Viewpoint, blur, compose, project, same};
 use triptych_spec::vertex::{DEPTH_ONE, viewport};
 
 use super::{Scene, facing, scenes, unmoved};
@@ -15,7 +13,15 @@ use crate::config;
 use crate::loose::Loose;
 
 /// Stages that are evaluated loosely.
-const STAGES: [&str; 7] = ["point", "place", "intensity", "direct", "gather", "blur", "compose"];
+const STAGES: [&str; 7] = [
+    "point",
+    "place",
+    "intensity",
+    "direct",
+    "gather",
+    "blur",
+    "compose",
+];
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
 fn f32s<const N: usize>(exact: [f64; N]) -> [f32; N] {
@@ -43,14 +49,19 @@ fn over(bounded: Bounded, observed: f32) -> f64 {
 }
 
 fn worst(colour: &Colour, observed: [f32; 3]) -> f64 {
-    (0..3).map(|i| over(colour[i], observed[i])).fold(0.0, f64::max)
+    (0..3)
+        .map(|i| over(colour[i], observed[i]))
+        .fold(0.0, f64::max)
 }
 
 /// Inputs of a stage: rounded once.
 fn given(colours: &[Colour]) -> Vec<Colour> {
     let round = |c: &Colour| {
         let values = f32s(c.map(|c| c.value));
-        values.map(|c| Bounded { value: f64::from(c), bound: 0.0 })
+        values.map(|c| Bounded {
+            value: f64::from(c),
+            bound: 0.0,
+        })
     };
     colours.iter().map(round).collect()
 }
@@ -129,7 +140,9 @@ fn gathered(m: &mut Loose, scene: &Scene, frame: &Frame, pixel: usize, way: usiz
     let lights = frame.rsm.lights();
     let mut terms: [Vec<f32>; 3] = Default::default();
     for (_, texel) in scene.kernel(place.texel) {
-        let Some(light) = &lights[texel] else { continue };
+        let Some(light) = &lights[texel] else {
+            continue;
+        };
         let faced = facing(&scene.model, to, light.surface.point)
             && facing(&scene.model, &light.surface, to.point);
         if faced {
@@ -160,11 +173,20 @@ fn lit(m: &mut Loose, scene: &Scene, surface: &Surface) -> [f32; 3] {
 }
 
 /// The mean of a square of buffer B.
-fn averaged(m: &mut Loose, scene: &Scene, frame: &Frame, input: &[Colour], pixel: usize) -> [f32; 3] {
+fn averaged(
+    m: &mut Loose,
+    scene: &Scene,
+    frame: &Frame,
+    input: &[Colour],
+    pixel: usize,
+) -> [f32; 3] {
     let Some(middle) = &frame.coarse.surfaces[pixel] else {
         return [0.0; 3];
     };
-    let (width, radius) = (frame.coarse.size.width as usize, scene.parameters.blur as usize);
+    let (width, radius) = (
+        frame.coarse.size.width as usize,
+        scene.parameters.blur as usize,
+    );
     let taken = (0..input.len()).filter(|other| {
         let near = (other % width).abs_diff(pixel % width) <= radius
             && (other / width).abs_diff(pixel / width) <= radius;
@@ -176,7 +198,11 @@ fn averaged(m: &mut Loose, scene: &Scene, frame: &Frame, input: &[Colour], pixel
         let terms: Vec<f32> = taken.iter().map(|at| plain(&input[*at])[i]).collect();
         let sum = m.sum(&terms);
         let [count] = f32s([terms.len() as f64]);
-        if terms.len() == 1 { sum } else { m.div(sum, count) }
+        if terms.len() == 1 {
+            sum
+        } else {
+            m.div(sum, count)
+        }
     })
 }
 
@@ -186,7 +212,10 @@ fn strain(scene: &Scene, seed: u64, way: usize) -> [f64; 7] {
     let frame = scene.frame();
     let mut most = [0.0; 7];
     let mut note = |stage: usize, ratio: f64| most[stage] = f64::max(most[stage], ratio);
-    let (inputs, b) = ([&frame.direct.light, &frame.all].map(|c| given(c)), given(&frame.blocked.light));
+    let (inputs, b) = (
+        [&frame.direct.light, &frame.all].map(|c| given(c)),
+        given(&frame.blocked.light),
+    );
     for (pixel, surface) in frame.seen.surfaces.iter().enumerate() {
         let Some(surface) = surface else { continue };
         let expected = unmoved(&scene.model, surface, scene.parameters.offset);
@@ -199,7 +228,10 @@ fn strain(scene: &Scene, seed: u64, way: usize) -> [f64; 7] {
             note(0, over(bounded, observed[axis]));
         }
         note(1, placed(m, scene, surface.point));
-        note(4, worst(&frame.all[pixel], gathered(m, scene, &frame, pixel, way)));
+        note(
+            4,
+            worst(&frame.all[pixel], gathered(m, scene, &frame, pixel, way)),
+        );
         if frame.direct.lit[pixel] {
             note(3, worst(&frame.direct.light[pixel], lit(m, scene, surface)));
         }
@@ -231,38 +263,72 @@ fn placed(m: &mut Loose, scene: &Scene, point: [i32; 3]) -> f64 {
     let rows = viewport(view.size).times(&view.matrix).rows;
     let [x, y, z, w] = rows.map(|row| dot(m, &f32s(row), &[a, b, c, 1.0]));
     let depth = m.div(z, w);
-    let observed = [m.div(x, w), m.div(y, w), m.mul(depth, f32s([f64::from(DEPTH_ONE)])[0])];
+    let observed = [
+        m.div(x, w),
+        m.div(y, w),
+        m.mul(depth, f32s([f64::from(DEPTH_ONE)])[0]),
+    ];
     worst(&bounded, observed)
 }
 
-fn composed(m: &mut Loose, scene: &Scene, frame: &Frame, inputs: &[Vec<Colour>; 2], b: &[Colour]) -> f64 {
+fn composed(
+    m: &mut Loose,
+    scene: &Scene,
+    frame: &Frame,
+    inputs: &[Vec<Colour>; 2],
+    b: &[Colour],
+) -> f64 {
     let [direct, all] = inputs;
     let make = |all: &[Colour], b: &[Colour]| {
         let background = [0.25, 0.5, 0.75];
         let light = [&direct[..], all];
-        compose(&scene.model, &frame.seen, light, (&frame.coarse, b), &scene.parameters, background)
+        compose(
+            &scene.model,
+            &frame.seen,
+            light,
+            (&frame.coarse, b),
+            &scene.parameters,
+            background,
+        )
     };
     let picture = make(all, b);
     // Which pixel of B is taken, from a buffer that numbers them: the colours are 1.
-    let white = triptych_spec::rsm::Model { colours: vec![[1.0; 3]; scene.model.colours.len()], ..scene.model.clone() };
+    let white = triptych_spec::rsm::Model {
+        colours: vec![[1.0; 3]; scene.model.colours.len()],
+        ..scene.model.clone()
+    };
     let value = |value: f64| [Bounded { value, bound: 0.0 }; 3];
     let numbers: Vec<Colour> = (0..b.len()).map(|n| value(n as f64)).collect();
     let many = vec![value(1e4); all.len()];
     let dark = vec![value(0.0); all.len()];
-    let taken = compose(&white, &frame.seen, [&dark, &many], (&frame.coarse, &numbers), &scene.parameters, [1e4; 3]);
+    let taken = compose(
+        &white,
+        &frame.seen,
+        [&dark, &many],
+        (&frame.coarse, &numbers),
+        &scene.parameters,
+        [1e4; 3],
+    );
     let pixel = |pixel: usize| {
         let Some(surface) = &frame.seen.surfaces[pixel] else {
             return worst(&picture[pixel], [0.25, 0.5, 0.75]);
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a row")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a row"
+        )]
         let from = (1e4 - taken[pixel][0].value) as usize;
         let colour = scene.model.colours[surface.triangle as usize];
         let [d, a, b] = [&direct[pixel], &all[pixel], &b[from]].map(plain);
-        worst(&picture[pixel], [0, 1, 2].map(|i| {
-            let indirect = m.sub(a[i], b[i]).max(0.0);
-            let light = m.add(d[i], indirect);
-            m.mul(light, colour[i])
-        }))
+        worst(
+            &picture[pixel],
+            [0, 1, 2].map(|i| {
+                let indirect = m.sub(a[i], b[i]).max(0.0);
+                let light = m.add(d[i], indirect);
+                m.mul(light, colour[i])
+            }),
+        )
     };
     (0..all.len()).map(pixel).fold(0.0, f64::max)
 }

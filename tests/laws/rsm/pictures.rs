@@ -156,14 +156,46 @@ proptest! {
 /// A bright neighbour cannot make a pixel's indirect light negative.
 #[test]
 fn never_negative() {
-    let model = Model::new(vec![[0, 0, 0], [64, 0, 0], [0, 64, 0]], vec![[0, 1, 2]], vec![[1.0; 3]]);
+    let model = Model::new(
+        vec![[0, 0, 0], [64, 0, 0], [0, 64, 0]],
+        vec![[0, 1, 2]],
+        vec![[1.0; 3]],
+    );
     let model = model.expect("a model");
-    let size = Size { width: 1, height: 1 };
-    let surfaces = vec![Some(Surface { triangle: 0, side: 1, point: [1, 1, 2] })];
-    let seen = triptych_spec::rsm::Gbuffer { size, keys: vec![0], surfaces: surfaces.clone(), stray: vec![[0; 3]] };
+    let size = Size {
+        width: 1,
+        height: 1,
+    };
+    let surfaces = vec![Some(Surface {
+        triangle: 0,
+        side: 1,
+        point: [1, 1, 2],
+    })];
+    let seen = triptych_spec::rsm::Gbuffer {
+        size,
+        keys: vec![0],
+        surfaces: surfaces.clone(),
+        stray: vec![[0; 3]],
+    };
     let coarse = Coarse { size, surfaces };
-    let parameters = triptych_spec::rsm::Parameters { radius: 0, stride: 1, divisor: 1, blur: 0, bias: 0, clamp: 1, offset: 2, edge: 0 };
+    let parameters = triptych_spec::rsm::Parameters {
+        radius: 0,
+        stride: 1,
+        divisor: 1,
+        blur: 0,
+        bias: 0,
+        clamp: 1,
+        offset: 2,
+        edge: 0,
+    };
     let light = [&[grey(0.5)][..], &[grey(1.0)]];
-    let picture = compose(&model, &seen, light, (&coarse, &[grey(2.0)]), &parameters, [0.0; 3]);
+    let picture = compose(
+        &model,
+        &seen,
+        light,
+        (&coarse, &[grey(2.0)]),
+        &parameters,
+        [0.0; 3],
+    );
     assert_eq!(picture[0][0].value, 0.5);
 }

@@ -26,7 +26,13 @@ fn seen(scene: &Scene, gbuffer: &Gbuffer) -> Vec<(usize, u32, [i32; 3])> {
 
 /// A corner of a box around a point.
 fn around(point: [i32; 3], corner: usize) -> [i32; 3] {
-    [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { point[axis] - 1 } else { point[axis] + 1 })
+    [0, 1, 2].map(|axis| {
+        if corner >> axis & 1 == 0 {
+            point[axis] - 1
+        } else {
+            point[axis] + 1
+        }
+    })
 }
 
 /// Whether the middle of a pixel is in a triangle as the view has it, before it is snapped.
@@ -197,7 +203,10 @@ proptest! {
 #[test]
 fn without_area() {
     let face = Face::new([[0; 3], [5, 5, 5], [7, 7, 7]]);
-    assert_eq!((face.normal, face.unit, face.coarse), ([0; 3], [0.0; 3], [0; 3]));
+    assert_eq!(
+        (face.normal, face.unit, face.coarse),
+        ([0; 3], [0.0; 3], [0; 3])
+    );
 }
 
 /// What is no model, view or parameter is named.
@@ -210,28 +219,71 @@ fn limits() {
     assert_eq!(model(at, vec![], vec![]), Err(RsmError::Outside(at)));
     let missing = model([0; 3], vec![[0, 0, 1]], vec![[0.0; 3]]);
     assert_eq!(missing, Err(RsmError::Row(1)));
-    assert_eq!(model([0; 3], rows(0), vec![[0.0; 3]]), Err(RsmError::Colours(1, 0)));
+    assert_eq!(
+        model([0; 3], rows(0), vec![[0.0; 3]]),
+        Err(RsmError::Colours(1, 0))
+    );
     let dark = model([0; 3], vec![[0; 3]], vec![[0.0, -1.0, 0.0]]);
     assert_eq!(dark, Err(RsmError::Light(-1.0)));
-    let sound = Parameters { radius: 4, stride: 1, divisor: 2, blur: 1, bias: 0, clamp: 1, offset: 2, edge: 9 };
-    let eye = Size { width: 8, height: 8 };
+    let sound = Parameters {
+        radius: 4,
+        stride: 1,
+        divisor: 2,
+        blur: 1,
+        bias: 0,
+        clamp: 1,
+        offset: 2,
+        edge: 9,
+    };
+    let eye = Size {
+        width: 8,
+        height: 8,
+    };
     assert_eq!(sound.check(eye), Ok(()));
     for wrong in [
-        Parameters { radius: 1024, ..sound },
+        Parameters {
+            radius: 1024,
+            ..sound
+        },
         Parameters { stride: 0, ..sound },
-        Parameters { divisor: 65, ..sound },
+        Parameters {
+            divisor: 65,
+            ..sound
+        },
         Parameters { blur: 17, ..sound },
-        Parameters { bias: BIAS_MAX + 1, ..sound },
+        Parameters {
+            bias: BIAS_MAX + 1,
+            ..sound
+        },
         Parameters { clamp: 0, ..sound },
         Parameters { offset: 1, ..sound },
-        Parameters { edge: 1 << 21, ..sound },
+        Parameters {
+            edge: 1 << 21,
+            ..sound
+        },
     ] {
-        assert!(matches!(wrong.check(eye), Err(RsmError::Limit { .. })), "{wrong:?}");
+        assert!(
+            matches!(wrong.check(eye), Err(RsmError::Limit { .. })),
+            "{wrong:?}"
+        );
     }
     // 2048 x 2048 pixels of 129 x 129 texels.
-    let wide = Parameters { radius: 64, divisor: 1, ..sound };
-    let large = Size { width: 2048, height: 2048 };
-    assert!(matches!(wide.check(large), Err(RsmError::Limit { name: "the number of rays", .. })));
+    let wide = Parameters {
+        radius: 64,
+        divisor: 1,
+        ..sound
+    };
+    let large = Size {
+        width: 2048,
+        height: 2048,
+    };
+    assert!(matches!(
+        wide.check(large),
+        Err(RsmError::Limit {
+            name: "the number of rays",
+            ..
+        })
+    ));
 }
 
 /// A perspective's eye is on the lattice, or there is no view; an orthographic one may be
@@ -240,8 +292,14 @@ fn limits() {
 fn viewpoints() {
     use triptych_spec::camera::{Camera, Projection};
     use triptych_spec::grid::lattice::Lattice;
-    let lattice = Lattice { centre: [0.0; 3], exponent: 0 };
-    let size = Size { width: 4, height: 4 };
+    let lattice = Lattice {
+        centre: [0.0; 3],
+        exponent: 0,
+    };
+    let size = Size {
+        width: 4,
+        height: 4,
+    };
     let far = f64::from(1 << 24);
     let camera = |projection| Camera {
         eye: [0.0, 0.0, far],
@@ -252,11 +310,33 @@ fn viewpoints() {
         far: 2.0 * far,
     };
     let perspective = camera(Projection::Perspective { fov: 60.0 });
-    assert_eq!(View::new(&perspective, &lattice, size), Err(RsmError::TooFar));
-    let view = View::new(&camera(Projection::Orthographic { height: 2.0 }), &lattice, size);
-    assert_eq!(view.map(|v| v.viewpoint), Ok(Viewpoint::Far([0, 0, 1 << 23])));
-    let none = Camera { up: [0.0, 0.0, 1.0], ..camera(Projection::Orthographic { height: 2.0 }) };
-    assert!(matches!(View::new(&none, &lattice, size), Err(RsmError::Camera(_))));
-    let empty = Size { width: 0, height: 4 };
-    assert!(matches!(View::new(&none, &lattice, empty), Err(RsmError::Limit { .. })));
+    assert_eq!(
+        View::new(&perspective, &lattice, size),
+        Err(RsmError::TooFar)
+    );
+    let view = View::new(
+        &camera(Projection::Orthographic { height: 2.0 }),
+        &lattice,
+        size,
+    );
+    assert_eq!(
+        view.map(|v| v.viewpoint),
+        Ok(Viewpoint::Far([0, 0, 1 << 23]))
+    );
+    let none = Camera {
+        up: [0.0, 0.0, 1.0],
+        ..camera(Projection::Orthographic { height: 2.0 })
+    };
+    assert!(matches!(
+        View::new(&none, &lattice, size),
+        Err(RsmError::Camera(_))
+    ));
+    let empty = Size {
+        width: 0,
+        height: 4,
+    };
+    assert!(matches!(
+        View::new(&none, &lattice, empty),
+        Err(RsmError::Limit { .. })
+    ));
 }

@@ -12,12 +12,21 @@ use crate::config;
 /// The pixel of the picture that a pixel of buffer B is.
 fn fine(scene: &Scene, pixel: usize) -> usize {
     let [width, eye] = [scene.parameters.coarse(scene.eye.size), scene.eye.size].map(|s| s.width);
-    let (width, eye, divisor) = (width as usize, eye as usize, scene.parameters.divisor as usize);
+    let (width, eye, divisor) = (
+        width as usize,
+        eye as usize,
+        scene.parameters.divisor as usize,
+    );
     pixel / width * divisor * eye + pixel % width * divisor
 }
 
 /// What free and blocked texels give a pixel, how many rays that took, and which are blocked.
-fn brute(scene: &Scene, frame: &Frame, lights: &[Option<Light>], at: usize) -> ([[f64; 3]; 2], u64, Vec<usize>) {
+fn brute(
+    scene: &Scene,
+    frame: &Frame,
+    lights: &[Option<Light>],
+    at: usize,
+) -> ([[f64; 3]; 2], u64, Vec<usize>) {
     let (mut sums, mut rays, mut bits) = ([[0.0; 3]; 2], 0, Vec::new());
     let (Some(surface), Some(place)) = (frame.seen.surfaces[at], frame.places[at]) else {
         return (sums, rays, bits);
@@ -33,11 +42,18 @@ fn brute(scene: &Scene, frame: &Frame, lights: &[Option<Light>], at: usize) -> (
         rays += 1;
         let ray = Ray::between(from, to);
         let all = 0..u32::try_from(scene.blockers.triangles.len()).unwrap();
-        let blocked = all.into_iter().any(|t| crossing(&ray, scene.blockers.corners(t)).is_some());
+        let blocked = all
+            .into_iter()
+            .any(|t| crossing(&ray, scene.blockers.corners(t)).is_some());
         if blocked {
             bits.push(number);
         }
-        let factor = given(&scene.model, &surface, &light.surface, scene.parameters.clamp);
+        let factor = given(
+            &scene.model,
+            &surface,
+            &light.surface,
+            scene.parameters.clamp,
+        );
         for (sum, c) in sums[usize::from(blocked)].iter_mut().zip(light.intensity) {
             *sum += factor * f64::from(c);
         }
