@@ -2,7 +2,6 @@
 
 use super::kernel::{projected, squared};
 use super::{Colour, DARK, Gbuffer, Lamp, Model, Parameters, Place, Surface, Viewpoint};
-use crate::abuffer::NOTHING;
 use crate::bound::{Bounded, Real};
 use crate::scene::Size;
 
@@ -47,7 +46,7 @@ pub fn direct(
     direct
 }
 
-/// The traditional shadow test.
+/// The traditional shadow test; `map` holds keys, [`crate::abuffer::NOTHING`] among them.
 fn reached(place: Place, size: Size, map: &[u32], bias: u32) -> bool {
     let [Ok(x), Ok(y)] = place.texel.map(u32::try_from) else {
         return false;
@@ -56,7 +55,8 @@ fn reached(place: Place, size: Size, map: &[u32], bias: u32) -> bool {
         return false;
     }
     let nearest = map[(y * size.width + x) as usize];
-    nearest == NOTHING || u64::from(place.key) <= u64::from(nearest) + u64::from(bias)
+    // NOTHING is farther than every key.
+    u64::from(place.key) <= u64::from(nearest) + u64::from(bias)
 }
 
 /// Whether the side that is seen faces the light, exactly.

@@ -1,7 +1,7 @@
 //! Which texels light a pixel, and how much one of them gives.
 
 use super::{Colour, Light, Model, Parameters, Surface};
-use crate::bound::{Bounded, Real, U};
+use crate::bound::{Bounded, Real, U, gamma};
 use crate::grid::exact::minus;
 use crate::grid::lattice::Point;
 use crate::scene::Size;
@@ -70,23 +70,29 @@ pub fn term(model: &Model, to: &Surface, light: &Light, clamp: u64) -> Option<Co
 /// A difference along the unit normal on the side that is seen, not negative.
 pub(super) fn projected(model: &Model, surface: &Surface, d: Point) -> Bounded {
     let side = f64::from(surface.side);
-    let [x, y, z] = model
-        .face(surface.triangle)
-        .unit
-        .map(|c| side * f64::from(c));
-    let [a, b, c] = d.map(f64::from);
-    Bounded::sum_of_products([x, y, z, 0.0], [a, b, c, 0.0]).at_least(0.0)
+    let unit = model.face(surface.triangle).unit;
+    dot(unit.map(|c| side * f64::from(c)), d).at_least(0.0)
 }
 
-/// The squared length of a difference, or `least` if that is more; from two exact sums of
-/// integers, of which the larger is rounded to `f32` in either case.
+/// The squared length of a difference, or `least` if that is more. The larger of the two is
+/// rounded to `f32` in either case.
 pub(super) fn squared(d: Point, least: u64) -> Bounded {
-    let [x, y, z] = d.map(f64::from);
-    let length = Bounded::sum_of_products([x, y, z, 0.0], [x, y, z, 0.0]);
+    let length = dot(d.map(f64::from), d);
     // Up to 3 * 2^48, which `f64` holds; a kernel has it rounded once.
     let least = least as f64;
     Bounded {
         value: length.value.max(least),
         bound: length.bound.max(U * least),
+    }
+}
+
+/// Numbers that `f32` holds times integers that it holds. A term meets its product and two
+/// additions, fused or in any order. Nothing is flushed: components of unit normals that
+/// are not 0 are above 2^-50, so all products and sums are multiples of 2^-74.
+fn dot(a: [f64; 3], d: Point) -> Bounded {
+    let terms = [0, 1, 2].map(|i| a[i] * f64::from(d[i]));
+    Bounded {
+        value: terms[0] + terms[1] + terms[2],
+        bound: gamma(3) * (terms[0].abs() + terms[1].abs() + terms[2].abs()),
     }
 }

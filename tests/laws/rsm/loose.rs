@@ -4,11 +4,18 @@
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use triptych_spec::bound::Bounded;
-use triptych_spec::rsm::{Colour, Frame, Light, Surface, Viewpoint, blur, compose, project, same};
-use triptych_spec::vertex::{DEPTH_ONE, viewport};
+use triptych_spec::abuffer::NOTHING;
+use triptych_spec::bound::{Bounded, TINY, U};
+use triptych_spec::camera::{Camera, Projection};
+use triptych_spec::grid::lattice::Lattice;
+use triptych_spec::rsm::{
+    Colour, Frame, Gbuffer, Lamp, Light, Model, Parameters, Place, Surface, View, blur, compose,
+    direct, project, rsm, term,
+};
+use triptych_spec::scene::Size;
 
-use super::{Scene, facing, scenes, unmoved};
+use super::kernels::{averaged, f32s, gathered, lit, placed, plain, point};
+use super::{PARAMETERS, Scene, scenes, unmoved};
 use crate::config;
 use crate::loose::Loose;
 
@@ -22,22 +29,6 @@ const STAGES: [&str; 7] = [
     "blur",
     "compose",
 ];
-
-#[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
-fn f32s<const N: usize>(exact: [f64; N]) -> [f32; N] {
-    exact.map(|c| c as f32)
-}
-
-/// `a . b`, in some order, fused or not.
-fn dot(machine: &mut Loose, a: &[f32], b: &[f32]) -> f32 {
-    if a.len() == 3 && machine.choose(2) == 0 {
-        let first = machine.mul(a[0], b[0]);
-        let second = machine.mul_add(a[1], b[1], first);
-        return machine.mul_add(a[2], b[2], second);
-    }
-    let terms: Vec<f32> = a.iter().zip(b).map(|(a, b)| machine.mul(*a, *b)).collect();
-    machine.sum(&terms)
-}
 
 /// An error over its bound; more than 1 is outside.
 fn over(bounded: Bounded, observed: f32) -> f64 {
@@ -66,146 +57,6 @@ fn given(colours: &[Colour]) -> Vec<Colour> {
     colours.iter().map(round).collect()
 }
 
-fn plain(colour: &Colour) -> [f32; 3] {
-    f32s(colour.map(|c| c.value))
-}
-
-/// The point of a pixel by the formula, snapped, not moved.
-fn point(m: &mut Loose, scene: &Scene, pixel: usize, triangle: u32) -> [i32; 3] {
-    let corners = scene.model.corners(triangle);
-    let matrix = viewport(scene.eye.size).times(&scene.eye.matrix).rows;
-    let width = scene.eye.size.width as usize;
-    let middle = f32s([pixel % width, pixel / width].map(|c| c as f64 + 0.5));
-    let from = corners.map(|corner| {
-        let [a, b, c] = f32s(corner.map(f64::from));
-        let [x, y, w] = [0, 1, 3].map(|r| dot(m, &f32s(matrix[r]), &[a, b, c, 1.0]));
-        [m.mul_add(-middle[0], w, x), m.mul_add(-middle[1], w, y)]
-    });
-    let mut edge = |j: usize, k: usize| {
-        let product = m.mul(from[j][1], from[k][0]);
-        m.mul_add(from[j][0], from[k][1], -product)
-    };
-    let edges = [edge(1, 2), edge(2, 0), edge(0, 1)];
-    let sign = m.sum(&edges).signum();
-    let weights = edges.map(|e| (e * sign).max(0.0));
-    let total = m.sum(&weights);
-    let shares = [m.div(weights[1], total), m.div(weights[2], total)];
-    [0, 1, 2].map(|axis| {
-        let sides = corners.map(|corner| corner[axis]);
-        let [a, b, c] = f32s(sides.map(f64::from));
-        let second = m.mul(shares[1], c - a);
-        let step = m.mul_add(shares[0], b - a, second);
-        let met = m.add(a, step);
-        #[expect(clippy::cast_possible_truncation, reason = "clamped")]
-        let snapped = (f64::from(met) + 0.5).floor() as i32;
-        snapped.clamp(*sides.iter().min().unwrap(), *sides.iter().max().unwrap())
-    })
-}
-
-/// The unit normal on the side that is seen, and a difference.
-fn projected(m: &mut Loose, scene: &Scene, surface: &Surface, d: [f32; 3]) -> f32 {
-    let side = if surface.side < 0 { -1.0 } else { 1.0 };
-    let unit = scene.model.face(surface.triangle).unit.map(|c| c * side);
-    dot(m, &unit, &d).max(0.0)
-}
-
-fn difference(to: [i32; 3], from: [i32; 3]) -> [f32; 3] {
-    f32s([0, 1, 2].map(|i| f64::from(to[i] - from[i])))
-}
-
-fn term(m: &mut Loose, scene: &Scene, to: &Surface, light: &Light, way: usize) -> [f32; 3] {
-    let d = difference(light.surface.point, to.point);
-    let p = projected(m, scene, to, d);
-    let q = projected(m, scene, &light.surface, d.map(|c| -c));
-    let [clamp] = f32s([scene.parameters.clamp as f64]);
-    let square = dot(m, &d, &d).max(clamp);
-    let factor = match way {
-        0 => {
-            let (a, b) = (m.div(p, square), m.div(q, square));
-            m.mul(a, b)
-        }
-        _ => {
-            let (a, b) = (m.mul(p, q), m.mul(square, square));
-            m.div(a, b)
-        }
-    };
-    light.intensity.map(|c| m.mul(factor, c))
-}
-
-/// The sum of some pixels' kernel.
-fn gathered(m: &mut Loose, scene: &Scene, frame: &Frame, pixel: usize, way: usize) -> [f32; 3] {
-    let (Some(to), Some(place)) = (&frame.seen.surfaces[pixel], &frame.places[pixel]) else {
-        return [0.0; 3];
-    };
-    let lights = frame.rsm.lights();
-    let mut terms: [Vec<f32>; 3] = Default::default();
-    for (_, texel) in scene.kernel(place.texel) {
-        let Some(light) = &lights[texel] else {
-            continue;
-        };
-        let faced = facing(&scene.model, to, light.surface.point)
-            && facing(&scene.model, &light.surface, to.point);
-        if faced {
-            let term = term(m, scene, to, light, way);
-            (0..3).for_each(|i| terms[i].push(term[i]));
-        }
-    }
-    terms.map(|terms| m.sum(&terms))
-}
-
-fn lit(m: &mut Loose, scene: &Scene, surface: &Surface) -> [f32; 3] {
-    let viewpoint = scene.lamp.view.viewpoint;
-    let d = f32s(viewpoint.from(surface.point).map(f64::from));
-    let along = projected(m, scene, surface, d);
-    let square = dot(m, &d, &d);
-    let inverse = m.inverse_sqrt(square);
-    let cosine = m.mul(along, inverse);
-    let factor = match viewpoint {
-        Viewpoint::Far(_) => cosine,
-        Viewpoint::Near(_) => {
-            let [reference] = f32s([f64::from(scene.lamp.reference)]);
-            let ratio = m.mul(reference, inverse);
-            let squared = m.mul(ratio, ratio);
-            m.mul(cosine, squared)
-        }
-    };
-    scene.lamp.strength.map(|c| m.mul(factor, c))
-}
-
-/// The mean of a square of buffer B.
-fn averaged(
-    m: &mut Loose,
-    scene: &Scene,
-    frame: &Frame,
-    input: &[Colour],
-    pixel: usize,
-) -> [f32; 3] {
-    let Some(middle) = &frame.coarse.surfaces[pixel] else {
-        return [0.0; 3];
-    };
-    let (width, radius) = (
-        frame.coarse.size.width as usize,
-        scene.parameters.blur as usize,
-    );
-    let taken = (0..input.len()).filter(|other| {
-        let near = (other % width).abs_diff(pixel % width) <= radius
-            && (other / width).abs_diff(pixel / width) <= radius;
-        let surface = frame.coarse.surfaces[*other].as_ref();
-        near && surface.is_some_and(|s| same(&scene.model, middle, s, scene.parameters.edge))
-    });
-    let taken: Vec<usize> = taken.collect();
-    [0, 1, 2].map(|i| {
-        let terms: Vec<f32> = taken.iter().map(|at| plain(&input[*at])[i]).collect();
-        let sum = m.sum(&terms);
-        let [count] = f32s([terms.len() as f64]);
-        if terms.len() == 1 {
-            sum
-        } else {
-            m.div(sum, count)
-        }
-    })
-}
-
 /// The largest error over its bound that an evaluation comes to, of each stage.
 fn strain(scene: &Scene, seed: u64, way: usize) -> [f64; 7] {
     let m = &mut Loose::new(seed);
@@ -227,7 +78,10 @@ fn strain(scene: &Scene, seed: u64, way: usize) -> [f64; 7] {
             };
             note(0, over(bounded, observed[axis]));
         }
-        note(1, placed(m, scene, surface.point));
+        let view = &scene.lamp.view;
+        if let Some(bounded) = project::<Bounded>(view, surface.point) {
+            note(1, worst(&bounded, placed(m, view, surface.point)));
+        }
         note(
             4,
             worst(&frame.all[pixel], gathered(m, scene, &frame, pixel, way)),
@@ -254,23 +108,6 @@ fn strain(scene: &Scene, seed: u64, way: usize) -> [f64; 7] {
     most
 }
 
-fn placed(m: &mut Loose, scene: &Scene, point: [i32; 3]) -> f64 {
-    let view = &scene.lamp.view;
-    let Some(bounded) = project::<Bounded>(view, point) else {
-        return 0.0;
-    };
-    let [a, b, c] = f32s(point.map(f64::from));
-    let rows = viewport(view.size).times(&view.matrix).rows;
-    let [x, y, z, w] = rows.map(|row| dot(m, &f32s(row), &[a, b, c, 1.0]));
-    let depth = m.div(z, w);
-    let observed = [
-        m.div(x, w),
-        m.div(y, w),
-        m.mul(depth, f32s([f64::from(DEPTH_ONE)])[0]),
-    ];
-    worst(&bounded, observed)
-}
-
 fn composed(
     m: &mut Loose,
     scene: &Scene,
@@ -293,7 +130,7 @@ fn composed(
     };
     let picture = make(all, b);
     // Which pixel of B is taken, from a buffer that numbers them: the colours are 1.
-    let white = triptych_spec::rsm::Model {
+    let white = Model {
         colours: vec![[1.0; 3]; scene.model.colours.len()],
         ..scene.model.clone()
     };
@@ -358,5 +195,95 @@ fn near() {
     for (stage, ratio) in STAGES.into_iter().zip(most) {
         println!("{stage}: {ratio:.3}");
         assert!(ratio >= 1e-3, "{stage} comes only to {ratio} of its bound");
+    }
+}
+
+/// Bounds of light that comes along an axis, counted by hand: a dot product meets 3
+/// roundings, a quotient 2.5, `inverseSqrt` 2 and half of what its operand has.
+#[test]
+fn by_hand() {
+    let corners = |x: i32, far: i32| [[x, 0, 0], [x, far, 0], [x, 0, far]];
+    let vertices = [corners(0, 64), corners(4096, 64)].concat();
+    let model = Model::new(vertices, super::rows(2), vec![[0.5; 3]; 2]).expect("a model");
+    let surface = |triangle, side, x| Surface {
+        triangle,
+        side,
+        point: [x, 9, 9],
+    };
+    let (to, surface) = (surface(0, 1, 2), surface(1, -1, 4094));
+    let light = Light {
+        surface,
+        intensity: [3.0, 0.0, 1.0],
+    };
+    let roundings = |bounded: Bounded| bounded.bound / (U * bounded.value);
+    let sum = term(&model, &to, &light, 1).expect("face to face");
+    let expected = 3.0 / f64::from(4092_i32 * 4092);
+    assert!((sum[0].value / expected - 1.0).abs() < 1e-14);
+    // Twice p / D with 3 + 3 + 2.5, and two products.
+    assert!(
+        (roundings(sum[0]) - 19.0).abs() < 1e-3,
+        "{}",
+        roundings(sum[0])
+    );
+    assert_eq!((sum[1].value, sum[1].bound <= 4.0 * TINY), (0.0, true));
+    // The clamp is rounded once, not three times.
+    let near = term(&model, &to, &light, 1 << 40).expect("face to face");
+    assert!(
+        (roundings(near[0]) - 15.0).abs() < 1e-3,
+        "{}",
+        roundings(near[0])
+    );
+
+    let size = Size {
+        width: 1,
+        height: 1,
+    };
+    let lattice = Lattice {
+        centre: [0.0; 3],
+        exponent: 0,
+    };
+    let camera = |projection| Camera {
+        eye: [1024.0, 9.0, 9.0],
+        target: [0.0, 9.0, 9.0],
+        up: [0.0, 1.0, 0.0],
+        projection,
+        near: 1.0,
+        far: 8192.0,
+    };
+    // Cosine: 3 + (3 / 2 + 2) + 1. Ratio: 3.5 + 1, squared 10; product with it, and strength.
+    let spot = Projection::Perspective { fov: 90.0 };
+    for (projection, count) in [
+        (spot, 19.5),
+        (Projection::Orthographic { height: 8.0 }, 8.5),
+    ] {
+        let view = View::new(&camera(projection), &lattice, size).expect("a view");
+        let lamp = Lamp::new(view, [1.0; 3], 512).expect("a lamp");
+        let seen = Gbuffer {
+            size,
+            keys: vec![0],
+            surfaces: vec![Some(to)],
+            stray: vec![[0; 3]],
+        };
+        let places = [Some(Place {
+            texel: [0, 0],
+            key: 0,
+        })];
+        let direct = direct(&model, &seen, &places, &lamp, &[NOTHING], &PARAMETERS);
+        assert!(
+            (roundings(direct.light[0][0]) - count).abs() < 1e-3,
+            "{:?}",
+            direct.light[0][0]
+        );
+        // The weight, given rounded, and two products.
+        let parameters = Parameters {
+            radius: 0,
+            ..PARAMETERS
+        };
+        let rsm = rsm(&model, &lamp, &parameters);
+        assert!(
+            (roundings(rsm.intensity[0][0]) - 3.0).abs() < 1e-3,
+            "{:?}",
+            rsm.intensity[0]
+        );
     }
 }

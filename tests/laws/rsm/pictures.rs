@@ -101,6 +101,25 @@ proptest! {
         }
     }
 
+    /// The same of any two triangles near each other, and points near both.
+    #[test]
+    fn pairs(
+        corners in prop::collection::vec(super::place(1 << 12), 6),
+        points in [super::place(1 << 12), super::place(1 << 12)],
+        sides in [any::<bool>(), any::<bool>()],
+        edge in 0..1_u32 << 13,
+    ) {
+        let model = Model::new(corners, super::rows(2), vec![[0.0; 3]; 2]).expect("a model");
+        let side = |front: bool| if front { 1 } else { -1 };
+        let a = Surface { triangle: 0, side: side(sides[0]), point: points[0] };
+        let b = Surface { triangle: 1, side: side(sides[1]), point: points[1] };
+        let answer = same(&model, &a, &b, edge);
+        prop_assert_eq!(answer, same(&model, &b, &a, edge));
+        if let Some(expected) = one(&model, &a, &b, edge) {
+            prop_assert_eq!(answer, expected);
+        }
+    }
+
     /// The picture is no darker than direct light and no brighter than with all light, and
     /// with a dark buffer B it is just that.
     #[test]
