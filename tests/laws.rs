@@ -22,7 +22,7 @@
 //! | `rsm::pictures` | blurs and composed pictures: constants, edges, nothing negative |
 //! | `rsm::closed_forms` | a patch over a ceiling, umbras, lamps; what goes through a map |
 //! | `rsm::loose` | whatever WGSL allows stays inside the bounds of all stages, and comes near them |
-//! | `rsm::limits` | what makes no scene is named; extremes are scenes |
+//! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:

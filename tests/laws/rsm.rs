@@ -2,6 +2,8 @@
 
 #[path = "rsm/closed_forms.rs"]
 mod closed_forms;
+#[path = "rsm/extremes.rs"]
+mod extremes;
 #[path = "rsm/kernels.rs"]
 mod kernels;
 #[path = "rsm/limits.rs"]

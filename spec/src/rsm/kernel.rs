@@ -36,7 +36,8 @@ pub(super) fn texels(
 
 /// Whether a surface and another's point face each other: `n . (to - from) > 0` for the
 /// normal on the side that is seen, exactly. A point was moved off its own face to that
-/// side, so a segment from it to whatever it faces never meets the plane of the face.
+/// side, so a segment from it to whatever it faces never meets the plane of the face. It is
+/// a triple product of lattice differences, as those that a ray is judged by.
 pub fn faces(model: &Model, from: &Surface, to: Point) -> bool {
     let along = model.face(from.triangle).along(minus(to, from.point));
     along.signum() == i128::from(from.side)

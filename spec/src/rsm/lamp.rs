@@ -100,11 +100,12 @@ pub struct Rsm {
 }
 
 impl Rsm {
-    /// The texels that are lights, as later stages are given them: rounded to `f32` once.
+    /// The texels that are lights, as later stages are given them: rounded to `f32` once,
+    /// and no brighter than it can say.
     pub fn lights(&self) -> Vec<Option<Light>> {
         let light = |(surface, intensity): (&Option<Surface>, &Colour)| {
             #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
-            let intensity = intensity.map(|c| c.value as f32);
+            let intensity = intensity.map(|c| c.value.min(f64::from(f32::MAX)) as f32);
             surface.map(|surface| Light { surface, intensity })
         };
         let texels = self.seen.surfaces.iter().zip(&self.intensity);

@@ -13,15 +13,12 @@ pub const COARSE_BITS: u32 = 14;
 pub struct Face {
     /// The cross product of two edges, exactly; components are at most 2^49. Zero for a
     /// triangle without area, which neither faces nor lights anything.
-    pub normal: Point64,
+    pub normal: [i64; 3],
     /// The same at length 1, rounded to `f32` once.
     pub unit: [f32; 3],
     /// The same at length 2^[`COARSE_BITS`], rounded to integers.
     pub coarse: Point,
 }
-
-/// Three wide integers.
-pub type Point64 = [i64; 3];
 
 impl Face {
     /// Of three corners.

@@ -123,8 +123,7 @@ fn patch() {
         // Both points were moved towards each other.
         let height = f64::from(point[1] - 2);
         let [x, z] = [point[0], point[2]].map(f64::from);
-        let ends =
-            |at: f64| [-1.0, 1.0].map(|sign| (f64::from(sign) * f64::from(a / 2) - at) / height);
+        let ends = |at: f64| [-1.0_f64, 1.0].map(|sign| (sign * f64::from(a / 2) - at) / height);
         let ([x0, x1], [z0, z1]) = (ends(x), ends(z));
         let factor = corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
         let [a, s] = [a, s].map(f64::from);

@@ -1,12 +1,13 @@
 //! What is no scene, and what scenes there are beyond the usual.
 
+use triptych_spec::bound::{Bounded, Real};
 use triptych_spec::camera::{Camera, Projection};
 use triptych_spec::grid::lattice::{EXTENT, Lattice};
 use triptych_spec::grid::resolution::Resolution;
 use triptych_spec::grid::{Blockers, Grid, Membership};
 use triptych_spec::rsm::{
-    BIAS_MAX, Face, Frame, Gbuffer, Lamp, Model, PLACE_MAX, Parameters, RsmError, Setting, Surface,
-    View, Viewpoint, place, project,
+    BIAS_MAX, Face, Frame, Gbuffer, Lamp, Light, Model, PLACE_MAX, Parameters, Rsm, RsmError,
+    Setting, Surface, View, Viewpoint, place, project,
 };
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::DEPTH_ONE;
@@ -201,50 +202,32 @@ fn beyond_the_map() {
     assert_eq!(placed([1 << 23, -EXTENT, -33]), Some(([PLACE_MAX; 2], one)));
 }
 
-/// Any number that a camera, a colour or a coordinate may have gives a frame.
-mod extremes {
-    use super::*;
-    use crate::config;
-    use crate::rsm::worlds::{R, worlds};
-    use proptest::prelude::*;
-
-    fn hostile() -> impl Strategy<Value = [f64; 4]> {
-        let power = -40..80_i32;
-        let fov = prop_oneof![Just(1e-9), Just(179.999_999), 1.0..179.0_f64];
-        (fov, power.clone(), power, -3.0..3.0_f64).prop_map(|(fov, near, far, at)| {
-            [fov, f64::from(near).exp2(), f64::from(far).exp2(), at]
-        })
-    }
-
-    proptest! {
-        #![proptest_config(config(300))]
-
-        #[test]
-        fn frames(mut world in worlds(), eye in hostile(), light in hostile(), bright: bool, corner in 0..8_usize) {
-            for (camera, [fov, near, far, at]) in [(&mut world.eye, eye), (&mut world.light, light)] {
-                (camera.near, camera.far) = (near, near + far);
-                camera.eye = camera.eye.map(|c| (c * at).rem_euclid(f64::from(R)));
-                camera.projection = match camera.projection {
-                    Projection::Perspective { .. } => Projection::Perspective { fov },
-                    Projection::Orthographic { .. } => Projection::Orthographic { height: far },
-                };
-                prop_assume!(camera.near < camera.far && camera.matrix(1.0).is_ok());
-            }
-            if bright {
-                world.colours.fill([f32::MAX; 3]);
-                world.strength = [f32::MAX, f32::MIN_POSITIVE, 1e-40];
-            }
-            // A triangle as long as the lattice, and one that is a point.
-            let end = [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { -R } else { R });
-            world.triangles[0] = [end, end.map(|c| -c), [0, R, R]];
-            world.triangles[1] = [end; 3];
-            let frame = world.scene([0; 3], 0).frame();
-            for colour in frame.picture.iter().flatten() {
-                prop_assert!(colour.value.is_finite() && colour.value >= 0.0);
-                prop_assert!(!colour.bound.is_nan());
-            }
-        }
-    }
+/// Light that is too bright for `f32` is as bright as it can say, so that no difference of
+/// two infinities comes of it.
+#[test]
+fn too_bright() {
+    let size = Size {
+        width: 1,
+        height: 1,
+    };
+    let surface = Surface {
+        triangle: 0,
+        side: 1,
+        point: [0; 3],
+    };
+    let seen = Gbuffer {
+        size,
+        keys: vec![0],
+        surfaces: vec![Some(surface)],
+        stray: vec![[0; 3]],
+    };
+    let bright = [1e60, 1.5, 1e39].map(Bounded::exact);
+    let rsm = Rsm {
+        seen,
+        intensity: vec![bright],
+    };
+    let intensity = [f32::MAX, 1.5, f32::MAX];
+    assert_eq!(rsm.lights(), [Some(Light { surface, intensity })]);
 }
 
 /// Nothing to see is a frame as well.

@@ -187,8 +187,8 @@ proptest! {
         prop_assert_eq!(face.normal.map(i128::from), exact);
         let wide = exact.map(|c| c as f64);
         let length = (wide[0].powi(2) + wide[1].powi(2) + wide[2].powi(2)).sqrt();
-        for axis in 0..3 {
-            let unit = wide[axis] / length;
+        for (axis, along) in wide.into_iter().enumerate() {
+            let unit = along / length;
             prop_assert!((f64::from(face.unit[axis]) - unit).abs() <= f64::from(f32::EPSILON) / 2.0);
             prop_assert!((f64::from(face.coarse[axis]) - unit * 16384.0).abs() <= 0.5 + 1e-9);
         }

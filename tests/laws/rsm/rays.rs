@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use triptych_spec::bound::Bounded;
 use triptych_spec::grid::hit::crossing;
 use triptych_spec::grid::ray::Ray;
-use triptych_spec::rsm::{DARK, Frame, Light};
+use triptych_spec::rsm::{Colour, DARK, Frame, Light};
 
 use super::{Scene, agree, facing, given, scenes, worlds};
 use crate::config;
@@ -173,6 +173,31 @@ proptest! {
     #[test]
     fn moved(world in worlds(), by in super::place(1 << 20), power in -60..60_i32) {
         prop_assert_eq!(world.scene([0; 3], 0).frame(), world.scene(by, power).frame());
+    }
+
+    /// A lamp that is a power of two as strong gives as much more light, straight and by
+    /// the bounce, and changes no decision.
+    #[test]
+    fn stronger(mut world in worlds(), power in 1..8_i32) {
+        let frame = world.scene([0; 3], 0).frame();
+        let factor = f64::from(power).exp2();
+        world.strength = world.strength.map(|c| c * 2_f32.powi(power));
+        let other = world.scene([0; 3], 0).frame();
+        prop_assert_eq!(&frame.seen, &other.seen);
+        prop_assert_eq!(&frame.direct.lit, &other.direct.lit);
+        prop_assert_eq!(&frame.blocked.bits, &other.blocked.bits);
+        let values = |colours: &[Colour], by: f64| -> Vec<[f64; 3]> {
+            colours.iter().map(|colour| colour.map(|c| c.value * by)).collect()
+        };
+        prop_assert_eq!(values(&frame.direct.light, factor), values(&other.direct.light, 1.0));
+        prop_assert_eq!(values(&frame.all, factor), values(&other.all, 1.0));
+        prop_assert_eq!(values(&frame.blurred, factor), values(&other.blurred, 1.0));
+        for (pixel, surface) in frame.seen.surfaces.iter().enumerate() {
+            if surface.is_some() {
+                let [a, b] = [(&frame, factor), (&other, 1.0)].map(|(f, by)| values(&f.picture[pixel..=pixel], by));
+                prop_assert_eq!(a, b);
+            }
+        }
     }
 
     /// A kernel that holds the whole map from everywhere gives every pixel that has a place
