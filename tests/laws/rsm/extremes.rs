@@ -45,9 +45,11 @@ proptest! {
         world.triangles[0] = [end, end.map(|c| -c), [0, R, R]];
         world.triangles[1] = [end; 3];
         let frame = world.scene([0; 3], 0).frame();
-        for colour in frame.picture.iter().flatten() {
+        for colour in frame.all.iter().chain(&frame.picture).flatten() {
             prop_assert!(colour.value.is_finite() && colour.value >= 0.0);
             prop_assert!(!colour.bound.is_nan());
+            // What f32 cannot say is promised by no evaluation.
+            prop_assert!(colour.value <= f64::from(f32::MAX) || colour.bound.is_infinite());
         }
     }
 }

@@ -2,11 +2,13 @@
 
 use proptest::prelude::*;
 use triptych_spec::abuffer::{NOTHING, opaque};
-use triptych_spec::grid::lattice::EXTENT;
-use triptych_spec::rsm::{BIAS_MAX, Face, Gbuffer, direct, gbuffer, place, project};
+use triptych_spec::camera::{Camera, Projection};
+use triptych_spec::grid::lattice::{EXTENT, Lattice};
+use triptych_spec::rsm::{BIAS_MAX, Face, Gbuffer, Model, View, direct, gbuffer, place, project};
+use triptych_spec::scene::Size;
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
-use super::{Scene, scenes, unmoved, volume, worlds};
+use super::{PARAMETERS, Scene, rows, scenes, unmoved, volume, worlds};
 use crate::config;
 
 /// Pixels that see something: number, triangle, and the point on it.
@@ -193,4 +195,53 @@ proptest! {
             prop_assert!((f64::from(face.coarse[axis]) - unit * 16384.0).abs() <= 0.5 + 1e-9);
         }
     }
+}
+
+/// A triangle that is seen exactly edge-on covers nothing, unless snapping its corners to
+/// sub-pixels gives it an area. Then its point is its first corner, and any of it is as good.
+#[test]
+fn edge_on() {
+    let lattice = Lattice {
+        centre: [0.0; 3],
+        exponent: 0,
+    };
+    let camera = Camera {
+        eye: [0.0; 3],
+        target: [0.0, 0.0, -1.0],
+        up: [0.0, 1.0, 0.0],
+        projection: Projection::Orthographic {
+            height: f64::from(3 << 10),
+        },
+        near: 0.0,
+        far: f64::from(1 << 14),
+    };
+    // A pixel is 1024 steps, and a sub-pixel 4.
+    let size = Size {
+        width: 3,
+        height: 3,
+    };
+    let view = View::new(&camera, &lattice, size).expect("a view");
+    let mut seen = 0;
+    for (x, y) in (1..8).flat_map(|x| (1..8).map(move |y| (x, y))) {
+        let ends = [(-33, 17, 5), (-29, 11, 50), (-50, 7, 31)];
+        for (a, b, c) in ends {
+            let corner = |n: i32, z: i32| [n * x, n * y, z];
+            let corners = vec![corner(a, -999), corner(b, -9), corner(c, -5000)];
+            let first = corners[0];
+            let model = Model::new(corners.clone(), rows(1), vec![[1.0; 3]]).expect("a model");
+            let seen_by = gbuffer(&model, &view, &PARAMETERS);
+            for (surface, stray) in seen_by.surfaces.iter().zip(&seen_by.stray) {
+                let Some(surface) = surface else { continue };
+                seen += 1;
+                assert_eq!(unmoved(&model, surface, PARAMETERS.offset), first);
+                let side = |i: usize| corners.iter().map(move |c| c[i]);
+                let long = [0, 1, 2].map(|i| {
+                    let ends = side(i).max().zip(side(i).min());
+                    ends.map_or(0, |(high, low)| high.abs_diff(low))
+                });
+                assert_eq!(*stray, long, "a kernel may find any of its points");
+            }
+        }
+    }
+    assert!(seen > 0, "snapping gives none an area");
 }
