@@ -17,6 +17,12 @@
 //! | `grid::kernel` | no arithmetic that WGSL allows leads past what a ray meets |
 //! | `grid::meshes` | no ray leaves a closed mesh unseen |
 //! | `grid::adapters` | random grids and rays give the spec's lists and answers on every adapter |
+//! | `rsm::points` | indirect light: points lie on their faces' planes and pixels' rays, and clear of the faces; shadows |
+//! | `rsm::rays` | brute force; nothing, or all, is blocked; a point's own face never is; powers of two; whole maps |
+//! | `rsm::pictures` | blurs and composed pictures: constants, edges, nothing negative |
+//! | `rsm::closed_forms` | a patch over a ceiling, umbras, lamps; what goes through a map |
+//! | `rsm::loose` | whatever WGSL allows stays inside the bounds of all stages, and comes near them |
+//! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:
@@ -39,6 +45,8 @@ mod loose;
 mod matrix;
 #[path = "laws/raster.rs"]
 mod raster;
+#[path = "laws/rsm.rs"]
+mod rsm;
 #[path = "laws/samples.rs"]
 mod samples;
 #[path = "laws/vertex.rs"]

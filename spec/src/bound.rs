@@ -49,6 +49,8 @@ pub trait Real: Copy {
     /// This number, where an evaluation may just as well take `other`, another way
     /// to the same result.
     fn or(self, other: Self) -> Self;
+    /// The larger of this number and an exactly representable constant.
+    fn at_least(self, least: f64) -> Self;
     /// Whether two numbers compare in every evaluation as they do here.
     fn certainly_differs(self, other: Self) -> bool;
 }
@@ -81,6 +83,9 @@ impl Real for f64 {
     fn or(self, _: Self) -> Self {
         self
     }
+    fn at_least(self, least: f64) -> Self {
+        self.max(least)
+    }
     fn certainly_differs(self, other: Self) -> bool {
         self != other
     }
@@ -109,6 +114,21 @@ impl Bounded {
     /// Whether every conforming result compares with zero as this number does.
     pub fn sign_is_certain(self) -> bool {
         self.bound == 0.0 || self.value.abs() > self.bound
+    }
+
+    /// `1 / sqrt(self)` by WGSL's `inverseSqrt`, which is off by 2 units; what it makes of
+    /// numbers that are not above [`TINY`] is not defined.
+    pub fn inverse_sqrt(self) -> Self {
+        let least = self.value - self.bound;
+        let value = 1.0 / self.value.sqrt();
+        if !(least >= TINY && self.value + self.bound <= f64::from(f32::MAX)) {
+            return Self {
+                value,
+                bound: f64::INFINITY,
+            };
+        }
+        // Convex and falling: farthest off where the operand is least.
+        Self::rounded(value, 1.0 / least.sqrt() - value, 2.0)
     }
 
     /// Finishes one operation: the propagated error of the operands, and `roundings`
@@ -191,6 +211,13 @@ impl Real for Bounded {
         Self {
             value: self.value,
             bound: self.bound.max(other.bound + apart),
+        }
+    }
+    fn at_least(self, least: f64) -> Self {
+        // Two numbers do not get farther apart.
+        Self {
+            value: self.value.max(least),
+            bound: self.bound,
         }
     }
     fn certainly_differs(self, other: Self) -> bool {

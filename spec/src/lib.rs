@@ -12,6 +12,7 @@
 //! | [`raster`] | cover | `gpu/src/raster.wgsl` |
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
+//! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | none yet |
 #![forbid(unsafe_code)]
 
 pub mod abuffer;
@@ -20,5 +21,6 @@ pub mod camera;
 pub mod grid;
 pub mod matrix;
 pub mod raster;
+pub mod rsm;
 pub mod scene;
 pub mod vertex;

@@ -13,7 +13,7 @@ impl Loose {
     }
 
     /// The next choice (SplitMix64).
-    fn choose(&mut self, ways: u64) -> u64 {
+    pub fn choose(&mut self, ways: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -79,6 +79,26 @@ impl Loose {
             }
         }
         self.flush(x)
+    }
+
+    /// `1 / sqrt(x)`, up to 2 units from the exact one.
+    pub fn inverse_sqrt(&mut self, x: f32) -> f32 {
+        let exact = 1.0 / f64::from(x).sqrt();
+        let mut result = nearest(exact);
+        let up = self.choose(2) == 0;
+        for _ in 0..self.choose(3) {
+            let further = if up {
+                result.next_up()
+            } else {
+                result.next_down()
+            };
+            // No more than two units in the last place, which are smallest below.
+            let unit = f64::from(result.next_down() - result).abs();
+            if (f64::from(further) - exact).abs() <= 2.0 * unit {
+                result = further;
+            }
+        }
+        result
     }
 
     /// A sum in some order: from the left, from the right, or in pairs.
