@@ -157,14 +157,32 @@ pub type Point3 = [u32; 3];
 /// Boundaries for a scene; without blockers one cell around the middle.
 ///
 /// # Errors
-/// A resolution beyond the limits, or a corner beyond the lattice.
+/// A resolution beyond the limits, a corner beyond the lattice, or boxes that touch more than
+/// [`ENTRIES_MAX`] cells together: that is looked at before any cell is.
 pub fn axes(blockers: &Blockers, resolution: Resolution) -> Result<[Axis; 3], GridError> {
     let outside = |p: &&Point| p.iter().any(|c| !(-EXTENT..=EXTENT).contains(c));
     if let Some(corner) = blockers.vertices.iter().find(outside) {
         return Err(GridError::Outside(*corner));
     }
     let [low, high] = blockers.bounds().unwrap_or_default();
-    resolution::axes(resolution, blockers.triangles.len(), low, high).map_err(GridError::Cells)
+    let axes = resolution::axes(resolution, blockers.triangles.len(), low, high);
+    let axes = axes.map_err(GridError::Cells)?;
+    let of = |row| touched(&axes, blockers.corners(id(row)));
+    let total = (0..blockers.triangles.len()).map(of).sum();
+    match total <= ENTRIES_MAX {
+        true => Ok(axes),
+        false => Err(GridError::Entries(total)),
+    }
+}
+
+/// How many cells a triangle's box touches. Sums of fewer than 2^32 triangles fit.
+fn touched(axes: &[Axis; 3], corners: [Point; 3]) -> u64 {
+    let [low, high] = bounds(corners);
+    let on = |axis: usize| {
+        let [first, last] = axes[axis].touched(low[axis], high[axis]);
+        u64::from(last - first + 1)
+    };
+    on(0) * on(1) * on(2)
 }
 
 /// Stage `count`: how many triangles each cell lists.

@@ -16,6 +16,8 @@ pub const CASES: &[Case] = &[
     ("nothing.toml", b"", Fails(":1: missing field `purpose`")),
     ("no-syntax.toml", b"purpose = 'x'\nsize = [1, 1\n", Fails(":2: unclosed array, expected `]`")),
     ("not-utf-8.toml", b"purpose = 'x'\nsize = '\xff'\n", Fails(":2: is not UTF-8; a scene.toml is expected")),
+    ("grid-rays.toml", b"purpose = 'x'\nsize = [1, 1]\nmesh = []\n[grid]\nrays = { random = 3000000 }\n", Fails(":5: 3000000 is outside 0 to 2097152 rays")),
+    ("grid-cells.toml", b"purpose = 'x'\nsize = [1, 1]\nmesh = []\n[grid]\nresolution = [4, 0, 4]\n", Fails(":5: 0 is outside 1 to 1024 cells")),
     ("unknown-key.toml", b"purpose = 'x'\nsize = [1, 1]\nmesh = []\ncolour = 3\n", Fails(":4: unknown field `colour`, expected one of `purpose`, `seed`, `size`, `background`, `camera`, `light`, `material`, `mesh`, `abuffer`, `grid`, `budget`, `expect`")),
     ("unknown-table.toml", b"purpose = 'x'\nsize = [1, 1]\nmesh = []\n[lights]\na = 1\n", Fails(":4: unknown field `lights`, expected one of `purpose`, `seed`, `size`, `background`, `camera`, `light`, `material`, `mesh`, `abuffer`, `grid`, `budget`, `expect`")),
     ("twice.toml", b"purpose = 'x'\npurpose = 'y'\n", Fails(":2: duplicate key")),

@@ -8,7 +8,7 @@ use triptych_spec::grid::resolution::Resolution;
 use super::value::{Capacity, Exactly};
 
 /// Most rays of a kind: with answers and copies a ray costs about 200 bytes.
-pub const RAYS_MAX: u32 = 1 << 24;
+pub const RAYS_MAX: u32 = 1 << 21;
 
 /// How the grid is built, and which rays go through it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]

@@ -194,6 +194,13 @@ fn limits() {
     assert_eq!(TOTAL_MAX, 1024 * 1024 * 16);
     let outside = build(&corner(EXTENT + 1), [1; 3]);
     assert_eq!(outside, Err(GridError::Outside([EXTENT + 1; 3])));
+    // 64 triangles across a grid of 2^24 cells are not counted one by one.
+    let across = |count| Blockers {
+        vertices: vec![[-EXTENT; 3], [EXTENT; 3], [0; 3]],
+        triangles: vec![[0, 1, 2]; count],
+    };
+    let cells = [256, 256, 256];
+    assert_eq!(build(&across(64), cells), Err(GridError::Entries(1 << 30)));
     let counts = [1 << 25, 1 << 25, 1];
     assert_eq!(scan(&counts), Err(GridError::Entries((1 << 26) + 1)));
     assert_eq!(scan(&counts[..2]), Ok(vec![0, 1 << 25, 1 << 26]));

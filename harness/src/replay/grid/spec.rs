@@ -16,6 +16,10 @@ use crate::scene::Loaded;
 /// of their box on each side.
 const AROUND: f64 = 1.25;
 
+/// Most triangles that rays may be held against: their number times the longest list. More
+/// take a quarter of an hour, on one core.
+pub const WORK_MAX: u64 = 1 << 34;
+
 /// Everything that the spec says about a scene's grid.
 pub struct GridRun {
     /// World space and the lattice.
@@ -84,6 +88,17 @@ impl GridRun {
             offsets,
             prims,
         };
+        let asked: u64 = Kind::ALL
+            .iter()
+            .map(|kind| u64::from(kind.count(&section.rays)))
+            .sum();
+        let longest = counts.iter().max().map_or(0, |longest| u64::from(*longest));
+        if asked * longest > WORK_MAX {
+            return Err(format!(
+                "{asked} rays and a list of {longest} triangles: their product is at most \
+                 {WORK_MAX}; use fewer rays or more cells"
+            ));
+        }
         let (rays, ends) = draw(&blockers, &grid, loaded.file.seed, &section.rays);
         let (answers, trace) = timed(|| trace(&grid, &blockers, &rays));
         Ok(Self {
