@@ -198,10 +198,8 @@ fn near() {
     }
 }
 
-/// Bounds of light that comes along an axis, counted by hand: a dot product meets 3
-/// roundings, a quotient 2.5, `inverseSqrt` 2 and half of what its operand has.
-#[test]
-fn by_hand() {
+/// Two triangles that face each other along x, and a point before each.
+fn face_to_face() -> (Model, [Surface; 2]) {
     let corners = |x: i32, far: i32| [[x, 0, 0], [x, far, 0], [x, 0, far]];
     let vertices = [corners(0, 64), corners(4096, 64)].concat();
     let model = Model::new(vertices, super::rows(2), vec![[0.5; 3]; 2]).expect("a model");
@@ -210,30 +208,39 @@ fn by_hand() {
         side,
         point: [x, 9, 9],
     };
-    let (to, surface) = (surface(0, 1, 2), surface(1, -1, 4094));
+    (model, [surface(0, 1, 2), surface(1, -1, 4094)])
+}
+
+/// A bound is so many roundings of its value.
+fn is_off_by(bounded: Bounded, roundings: f64) {
+    let found = bounded.bound / (U * bounded.value);
+    assert!((found - roundings).abs() < 1e-3, "{found}: {bounded:?}");
+}
+
+/// Bounds of light that comes along an axis, counted by hand: a dot product meets 3
+/// roundings, a quotient 2.5, `inverseSqrt` 2 and half of what its operand has.
+#[test]
+fn terms_by_hand() {
+    let (model, [to, surface]) = face_to_face();
     let light = Light {
         surface,
         intensity: [3.0, 0.0, 1.0],
     };
-    let roundings = |bounded: Bounded| bounded.bound / (U * bounded.value);
     let sum = term(&model, &to, &light, 1).expect("face to face");
     let expected = 3.0 / f64::from(4092_i32 * 4092);
     assert!((sum[0].value / expected - 1.0).abs() < 1e-14);
     // Twice p / D with 3 + 3 + 2.5, and two products.
-    assert!(
-        (roundings(sum[0]) - 19.0).abs() < 1e-3,
-        "{}",
-        roundings(sum[0])
-    );
+    is_off_by(sum[0], 19.0);
     assert_eq!((sum[1].value, sum[1].bound <= 4.0 * TINY), (0.0, true));
     // The clamp is rounded once, not three times.
     let near = term(&model, &to, &light, 1 << 40).expect("face to face");
-    assert!(
-        (roundings(near[0]) - 15.0).abs() < 1e-3,
-        "{}",
-        roundings(near[0])
-    );
+    is_off_by(near[0], 15.0);
+}
 
+/// The same of light that comes from a lamp.
+#[test]
+fn lamps_by_hand() {
+    let (model, [to, _]) = face_to_face();
     let size = Size {
         width: 1,
         height: 1,
@@ -269,21 +276,13 @@ fn by_hand() {
             key: 0,
         })];
         let direct = direct(&model, &seen, &places, &lamp, &[NOTHING], &PARAMETERS);
-        assert!(
-            (roundings(direct.light[0][0]) - count).abs() < 1e-3,
-            "{:?}",
-            direct.light[0][0]
-        );
+        is_off_by(direct.light[0][0], count);
         // The weight, given rounded, and two products.
         let parameters = Parameters {
             radius: 0,
             ..PARAMETERS
         };
         let rsm = rsm(&model, &lamp, &parameters);
-        assert!(
-            (roundings(rsm.intensity[0][0]) - 3.0).abs() < 1e-3,
-            "{:?}",
-            rsm.intensity[0]
-        );
+        is_off_by(rsm.intensity[0][0], 3.0);
     }
 }
