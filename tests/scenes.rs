@@ -149,10 +149,12 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
             .collect::<Vec<_>>()
     });
     // Compared or skipped for a reason: every stage says what became of it.
-    let chain = match outcome.rows.iter().any(|r| r.family == "grid") {
-        true => Chain::Rays,
-        false => Chain::Frame,
-    };
+    let traces = outcome.passes.iter().any(|pass| pass.name == "trace");
+    let chain = if traces { Chain::Rays } else { Chain::Frame };
+    // The folder says what a scene is for.
+    if outcome.rows.iter().any(|r| (r.family == "grid") != traces) {
+        wrong.push("a scene has a [grid] if and only if its family is grid".into());
+    }
     let all = adapters
         .iter()
         .flat_map(|a| stages_of(chain).map(move |s| (a, s)));

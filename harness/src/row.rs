@@ -32,7 +32,7 @@ pub enum Class {
 pub struct Row {
     /// `family/case`.
     pub scene: String,
-    /// `raster` or `abuffer`, the scene's folder.
+    /// `raster`, `abuffer` or `grid`, the scene's folder.
     pub family: String,
     /// Stage, such as `cover` or `build`.
     pub stage: String,
@@ -57,7 +57,8 @@ pub struct Row {
     /// Largest share of `admitted` that passes.
     pub admitted_budget: Option<f64>,
     /// Largest error, where there is a bound: in homogeneous pixels for `transform` and
-    /// `clip`, in keys for `snap` and Embree, in linear colour for `resolve`.
+    /// `clip`, in keys for `snap` and Embree, in linear colour for `resolve`, in lengths of the
+    /// ray's direction for `trace`.
     #[serde(default)]
     pub error: Option<f64>,
     /// Largest error over bound, where the class is an interval.

@@ -45,7 +45,7 @@ mesh = []
 pub struct Loaded {
     /// `family/case`.
     pub name: String,
-    /// `raster` or `abuffer`.
+    /// `raster`, `abuffer` or `grid`.
     pub family: String,
     /// The scene as written.
     pub file: SceneFile,

@@ -7,9 +7,25 @@ mod traced;
 #[cfg(test)]
 mod tests;
 
+use super::Judgement;
+use crate::row::Class;
+
 pub use cells::{counts, counts_within, entries, offsets, overflowed, within};
 pub use linked::linked;
 pub use traced::{Asked, any, closest};
+
+/// What a comparison of lists counts: entries, or the lists themselves where there are none
+/// to hold.
+fn listed(class: Class, entries: u64, lists: usize) -> Judgement {
+    let (unit, compared) = match entries {
+        0 => ("lists", lists as u64),
+        _ => ("entries", entries),
+    };
+    Judgement {
+        compared,
+        ..Judgement::new(class, unit)
+    }
+}
 
 /// Lists as runs of an array.
 #[derive(Clone, Copy, Debug)]

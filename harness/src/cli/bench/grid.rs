@@ -1,19 +1,17 @@
 //! `triptych bench grid`.
 
-use std::io::Write;
 use std::num::NonZeroU32;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::super::adapters::OnAdapters;
 use super::super::run_info::today;
 use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
+use super::legs::show;
 use crate::bench::grid::{HOW, Options, SCENES, run as measure, stem};
-use crate::bench::legs::{Legs, csv, lines, page_of};
+use crate::bench::legs::page_of;
 use crate::bench::{Progress, named};
 use crate::corpus;
-use crate::output::stdout;
-use crate::text::clean;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -58,27 +56,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let measured = measure(&adapters, &options, &Progress::new());
     let mut legs = measured.map_err(anyhow::Error::msg)?;
     legs.remarks.extend(remarks);
-    let mut out = stdout();
-    for line in lines(&legs) {
-        writeln!(out, "{}", line.trim_end())?;
-    }
-    for remark in &legs.remarks {
-        writeln!(out, "{}", clean(remark))?;
-    }
-    anyhow::ensure!(
-        !legs.rows.is_empty(),
-        "nothing was measured; see what was not, and why"
-    );
-    write(&folder, &legs)?;
+    let page = page_of(&legs, "Grids and rays", HOW);
+    show(&legs, &page, &folder, &stem(&legs))?;
     Ok(Verdict::Agree)
-}
-
-fn write(folder: &Path, legs: &Legs) -> anyhow::Result<()> {
-    let page = page_of(legs, "Grids and rays", HOW);
-    for (end, text) in [("csv", csv(legs)), ("md", page)] {
-        let file = folder.join(format!("{}.{end}", stem(legs)));
-        reports::write(&file, &text)?;
-    }
-    writeln!(stdout(), "Results: {}", folder.display())?;
-    Ok(())
 }

@@ -50,8 +50,14 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     let legs = measure(&corpus, &adapters, &options, &Progress::new());
     let legs = legs.map_err(anyhow::Error::msg)?;
+    show(&legs, &page(&legs), &folder, &legs.stem())?;
+    Ok(Verdict::Agree)
+}
+
+/// Prints what was measured, and leaves it as a page and as values.
+pub(super) fn show(legs: &Legs, page: &str, folder: &Path, stem: &str) -> anyhow::Result<()> {
     let mut out = stdout();
-    for line in lines(&legs) {
+    for line in lines(legs) {
         writeln!(out, "{}", line.trim_end())?;
     }
     for remark in &legs.remarks {
@@ -61,16 +67,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         !legs.rows.is_empty(),
         "nothing was measured; see what was not, and why"
     );
-    write(&folder, &legs)?;
-    Ok(Verdict::Agree)
-}
-
-fn write(folder: &Path, legs: &Legs) -> anyhow::Result<()> {
-    let stem = legs.stem();
-    for (end, text) in [("csv", csv(legs)), ("md", page(legs))] {
-        let file = folder.join(format!("{stem}.{end}"));
-        reports::write(&file, &text)?;
+    for (end, text) in [("csv", &*csv(legs)), ("md", page)] {
+        reports::write(&folder.join(format!("{stem}.{end}")), text)?;
     }
-    writeln!(stdout(), "Results: {}", folder.display())?;
+    writeln!(out, "Results: {}", folder.display())?;
     Ok(())
 }

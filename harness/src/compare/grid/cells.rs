@@ -1,6 +1,6 @@
 //! Counts, offsets and entries of cells.
 
-use super::Runs;
+use super::{Runs, listed};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::row::Class;
@@ -38,10 +38,7 @@ fn numbers(unit: &'static str, cause: Cause, spec: &[u32], seen: &[u32]) -> Judg
 /// Stage `fill`: every cell's run holds the same ids, rising. A cell that differs is counted
 /// once, by its first difference.
 pub fn entries(spec: Runs<'_>, seen: &[u32]) -> Judgement {
-    let mut judgement = Judgement {
-        compared: spec.prims.len() as u64,
-        ..Judgement::new(Class::Exact, "entries")
-    };
+    let mut judgement = listed(Class::Exact, spec.prims.len() as u64, spec.cells());
     let runs = Runs {
         prims: seen,
         ..spec
@@ -88,10 +85,7 @@ fn lists(cell: usize, spec: &[u32], seen: &[u32]) -> String {
 /// misses a cell that its box touches: between the spec's lists and those of boxes. What is
 /// beyond the spec's is counted as admitted.
 pub fn within(least: Runs<'_>, seen: Runs<'_>, most: Runs<'_>) -> Judgement {
-    let mut judgement = Judgement {
-        compared: most.prims.len() as u64,
-        ..Judgement::new(Class::Decision, "entries")
-    };
+    let mut judgement = listed(Class::Decision, most.prims.len() as u64, most.cells());
     for cell in 0..least.cells() {
         let (low, list, high) = (least.list(cell), seen.list(cell), most.list(cell));
         let rises = list.windows(2).all(|pair| pair[0] < pair[1]);
@@ -139,10 +133,7 @@ pub fn counts_within(least: &[u32], seen: &[u32], most: Runs<'_>) -> Judgement {
 /// An attempt of stage `fill` without room for all: what is stored belongs to its cell, no
 /// entry twice.
 pub fn overflowed(spec: Runs<'_>, seen: &[u32]) -> Judgement {
-    let mut judgement = Judgement {
-        compared: seen.len() as u64,
-        ..Judgement::new(Class::Structure, "entries")
-    };
+    let mut judgement = listed(Class::Structure, seen.len() as u64, spec.cells());
     for cell in 0..spec.cells() {
         let start = (spec.offsets[cell] as usize).min(seen.len());
         let end = (spec.offsets[cell + 1] as usize).min(seen.len());

@@ -3,7 +3,7 @@
 use triptych_gpu::grid::Linked;
 use triptych_spec::abuffer::EOL;
 
-use super::Runs;
+use super::{Runs, listed};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::row::Class;
@@ -18,10 +18,7 @@ pub fn linked(least: Runs<'_>, most: Runs<'_>, seen: &Linked) -> Judgement {
         false => u64::from(seen.attempts),
     };
     let capacity = seen.entries.len() as u64;
-    let mut judgement = Judgement {
-        compared: needed.min(capacity),
-        ..Judgement::new(Class::Structure, "entries")
-    };
+    let mut judgement = listed(Class::Structure, needed.min(capacity), least.cells());
     let bounds = [least, most].map(|runs| runs.prims.len() as u64);
     if !(bounds[0]..=bounds[1]).contains(&u64::from(seen.attempts)) {
         judgement.differs(Cause::Overflow, None, || {

@@ -210,3 +210,25 @@ fn either_may_come_first_where_bounds_overlap() {
     caused(&judged, &[]);
     assert_eq!(judged.admitted, 1, "not the spec's");
 }
+
+#[test]
+fn empty_lists_are_compared_as_lists() {
+    let none = Runs {
+        offsets: &[0, 0, 0],
+        prims: &[],
+    };
+    let same = entries(none, &[]);
+    assert_eq!((same.unit, same.compared), ("lists", 2));
+    let lists = Linked {
+        heads: vec![EOL; 2],
+        entries: Vec::new(),
+        attempts: 0,
+    };
+    let same = linked(none, none, &lists);
+    assert_eq!((same.unit, same.compared), ("lists", 2));
+    let heads = vec![EOL, 0];
+    caused(
+        &linked(none, none, &Linked { heads, ..lists }),
+        &[(Cause::CorruptLink, 1)],
+    );
+}
