@@ -108,7 +108,7 @@ fn the_frame_is_that_of_rust() {
         .collect();
     everywhere("Frame", &(fields, word(size_of::<Frame>())), layout);
     let names = [
-        "x", "y", "z", "overlap", "items", "first", "capacity", "run", "any",
+        "x", "y", "z", "overlap", "items", "chunks", "capacity", "run", "any",
     ];
     let (mut cells, _) = words(&names);
     cells.push(("unused".to_owned(), 48));
@@ -125,6 +125,7 @@ fn records_are_the_words_that_the_host_reads() {
         layout,
     );
     everywhere("Entry", &words(&["prim", "next"]), layout);
+    everywhere("Chunk", &words(&["triangle", "first"]), layout);
     everywhere("Hit", &words(&["prim", "time", "state", "at"]), layout);
     let ray = [
         ("origin", 0),

@@ -81,6 +81,7 @@ impl Sources {
             "runs",
             "scan",
             "search",
+            "sweep",
             "triangle",
             "vertex",
             "volume",
