@@ -3,11 +3,10 @@
 //
 // A list is built in passes of its own and read in later ones; within a pass, invocations
 // meet in atomics only.
-//#import cells
+//#import sweep
 //#import counter
 //#import runs
 //#import scan
-//#import overlap
 //#import search
 
 // Triangles that each cell lists; `fill` counts them down again.
@@ -42,23 +41,42 @@ fn item(id: vec3<u32>, groups: vec3<u32>) -> u32 {
     return id.x + id.y * groups.x * WORKGROUP;
 }
 
-fn lists(cell: vec3<u32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
-    return cells.overlap == 0u || overlaps(cell, a, b, c);
+// The same of a workgroup.
+fn chunk_of(group: vec3<u32>, groups: vec3<u32>) -> u32 {
+    return group.x + group.y * groups.x;
 }
 
+fn count_cell(way: Sweep) {
+    if lists(way) {
+        atomicAdd(&counts[number(here(way))], 1u);
+    }
+}
+
+// One triangle.
 @compute @workgroup_size(64)
 fn count(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let triangle = item(id, groups);
     if triangle >= cells.items {
         return;
     }
-    let a = corner(triangle, 0u);
-    let b = corner(triangle, 1u);
-    let c = corner(triangle, 2u);
-    for (var way = sweep(a, b, c); way.left > 0u; way = onward(way)) {
-        if lists(here(way), a, b, c) {
-            atomicAdd(&counts[number(here(way))], 1u);
-        }
+    for (var way = sweep(triangle); way.left > 0u; way = onward(way)) {
+        count_cell(way);
+    }
+}
+
+// One chunk of a large box.
+@compute @workgroup_size(64)
+fn count_chunks(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunk_of(group, groups);
+    if chunk >= cells.items {
+        return;
+    }
+    for (var way = share(chunks[chunk], lane); way.left > 0u; way = onward(way)) {
+        count_cell(way);
     }
 }
 
@@ -114,23 +132,42 @@ fn scan(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
 }
 
+// Whoever comes first gets the first place: as ids mostly come in order, lists then nearly are.
+fn fill_cell(way: Sweep) {
+    let cell = number(here(way));
+    if lists(way) {
+        let address = offsets[cell + 1u] - atomicSub(&counts[cell], 1u);
+        if address < cells.capacity {
+            prims[address] = way.triangle;
+        }
+    }
+}
+
+// One triangle.
 @compute @workgroup_size(64)
 fn fill(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let triangle = item(id, groups);
     if triangle >= cells.items {
         return;
     }
-    let a = corner(triangle, 0u);
-    let b = corner(triangle, 1u);
-    let c = corner(triangle, 2u);
-    for (var way = sweep(a, b, c); way.left > 0u; way = onward(way)) {
-        let cell = number(here(way));
-        if lists(here(way), a, b, c) {
-            let address = offsets[cell] + atomicSub(&counts[cell], 1u) - 1u;
-            if address < cells.capacity {
-                prims[address] = triangle;
-            }
-        }
+    for (var way = sweep(triangle); way.left > 0u; way = onward(way)) {
+        fill_cell(way);
+    }
+}
+
+// One chunk of a large box.
+@compute @workgroup_size(64)
+fn fill_chunks(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunk_of(group, groups);
+    if chunk >= cells.items {
+        return;
+    }
+    for (var way = share(chunks[chunk], lane); way.left > 0u; way = onward(way)) {
+        fill_cell(way);
     }
 }
 
@@ -182,23 +219,41 @@ fn fill_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
 }
 
 // The paper's lists, in whatever order invocations come.
+fn link_cell(way: Sweep) {
+    if lists(way) {
+        let address = claim();
+        if address < cells.capacity {
+            let next = atomicExchange(&heads[number(here(way))], address);
+            entries[address] = Entry(way.triangle, next);
+        }
+    }
+}
+
+// One triangle.
 @compute @workgroup_size(64)
 fn link(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let triangle = item(id, groups);
     if triangle >= cells.items {
         return;
     }
-    let a = corner(triangle, 0u);
-    let b = corner(triangle, 1u);
-    let c = corner(triangle, 2u);
-    for (var way = sweep(a, b, c); way.left > 0u; way = onward(way)) {
-        if lists(here(way), a, b, c) {
-            let address = claim();
-            if address < cells.capacity {
-                let next = atomicExchange(&heads[number(here(way))], address);
-                entries[address] = Entry(triangle, next);
-            }
-        }
+    for (var way = sweep(triangle); way.left > 0u; way = onward(way)) {
+        link_cell(way);
+    }
+}
+
+// One chunk of a large box.
+@compute @workgroup_size(64)
+fn link_chunks(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunk_of(group, groups);
+    if chunk >= cells.items {
+        return;
+    }
+    for (var way = share(chunks[chunk], lane); way.left > 0u; way = onward(way)) {
+        link_cell(way);
     }
 }
 

@@ -23,6 +23,8 @@ pub struct Stages<'g> {
     bricks: wgpu::Buffer,
     /// Time on the device of what ran last, without transfers.
     pub time: Duration,
+    /// Chunks of large boxes, of the last stage that went through boxes.
+    pub chunks: u32,
     /// Dispatches of the last search, until its rays were done.
     pub dispatches: u32,
 }
@@ -42,6 +44,7 @@ impl<'g> Stages<'g> {
             bricks: gpu.storage("bricks", 8 * bricks)?,
             device,
             time: Duration::ZERO,
+            chunks: 0,
             dispatches: 0,
         })
     }
@@ -52,7 +55,8 @@ impl<'g> Stages<'g> {
     /// Whatever the device reports; so for all stages.
     pub fn count(&mut self) -> Result<Vec<u32>, GpuError> {
         let buffers = [("counts", &self.counts)];
-        self.time = self.device.sweep("count", 0, &buffers)?;
+        let kernels = ["count", "count_chunks"];
+        (self.time, self.chunks) = self.device.sweep(kernels, 0, &buffers)?;
         self.device
             .gpu
             .read(&self.counts, self.device.total() as usize)
@@ -103,7 +107,8 @@ impl<'g> Stages<'g> {
             ("offsets", &self.offsets),
             ("prims", &self.prims),
         ];
-        self.time = self.device.sweep("fill", capacity, &buffers)?;
+        let kernels = ["fill", "fill_chunks"];
+        (self.time, self.chunks) = self.device.sweep(kernels, capacity, &buffers)?;
         if entries <= capacity {
             self.sort(entries)?;
         }
@@ -162,7 +167,8 @@ impl<'g> Stages<'g> {
             ("entries", &entries),
             ("counter", &counter),
         ];
-        self.time = self.device.sweep("link", capacity, &buffers)?;
+        let kernels = ["link", "link_chunks"];
+        (self.time, self.chunks) = self.device.sweep(kernels, capacity, &buffers)?;
         let attempts: Vec<u32> = gpu.read(&counter, 1)?;
         Ok(Linked {
             heads: gpu.read(&heads, total as usize)?,

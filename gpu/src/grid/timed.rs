@@ -40,8 +40,8 @@ pub struct Shape {
     pub entries: u32,
     /// Entries of the longest list.
     pub longest: u32,
-    /// Most cells that a triangle's box touches.
-    pub touched: u32,
+    /// Chunks of large boxes.
+    pub chunks: u32,
     /// Most steps of a ray: dispatches of the searches, any and closest.
     pub rounds: [u32; 2],
 }
@@ -154,23 +154,26 @@ fn build(
     };
     let tiles = total.div_ceil(TILE);
     let mut passes = Vec::new();
-    let sweep = |entry: &str, passes: &mut Vec<Ready>| -> Result<(), GpuError> {
-        for first in (0..shape.touched.max(1)).step_by(super::STEPS as usize) {
-            let cells = Cells {
-                items: device.triangles,
-                first,
-                capacity: shape.entries,
-                ..cells
-            };
-            passes.push(device.ready(entry, cells, named)?);
+    let sweep = |[small, large]: [&str; 2], passes: &mut Vec<Ready>| -> Result<(), GpuError> {
+        let cells = |items| Cells {
+            items,
+            capacity: shape.entries,
+            ..cells
+        };
+        let pass = device.ready(small, cells(device.triangles), named)?;
+        if shape.chunks == 0 {
+            passes.push(pass);
+            return Ok(());
         }
+        passes.push(device.counting(pass));
+        passes.push(device.ready_groups(large, cells(shape.chunks), shape.chunks, named)?);
         Ok(())
     };
-    sweep("count", &mut passes)?;
+    sweep(["count", "count_chunks"], &mut passes)?;
     passes.push(device.ready_groups("scan_tiles", of_cells, tiles, named)?);
     passes.push(device.ready_groups("scan_sums", of_cells, 1, named)?);
     passes.push(device.ready_groups("scan", of_cells, tiles, named)?);
-    sweep("fill", &mut passes)?;
+    sweep(["fill", "fill_chunks"], &mut passes)?;
     passes.push(device.ready("fill_sort", of_cells, named)?);
     let mut run = 1;
     let mut swapped: Vec<(&str, &wgpu::Buffer)> = named.to_vec();
