@@ -13,6 +13,7 @@ use triptych_spec::grid::ray::Ray;
 
 pub use device::Device;
 pub use stages::Stages;
+pub(crate) use timed::Room;
 pub use timed::{Shape, Span, Timed};
 
 /// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.
