@@ -25,6 +25,8 @@ pub enum Chain {
     Frame,
     /// Triangles in a grid, and rays at them: a scene with a `[grid]`.
     Rays,
+    /// Indirect light and its shadows: a scene with an `[rsm]`.
+    Indirect,
 }
 
 /// A stage. Its name is that of the spec's function, of its pass in a plan, and of the
@@ -108,6 +110,21 @@ pub const FAMILIES: &[Family] = &[
         ],
         no_corpus: None,
     },
+    Family {
+        name: "rsm",
+        chain: Chain::Indirect,
+        stages: &[
+            of_pixels("gbuffer", &["gbuffer"]),
+            of_pixels("rsm", &["rsm"]),
+            of_pixels("place", &["place"]),
+            of_pixels("direct", &["direct"]),
+            of_pixels("gather", &["gather"]),
+            of_pixels("block", &["block", "block_sum"]),
+            of_pixels("blur", &["blur"]),
+            of_pixels("compose", &["compose"]),
+        ],
+        no_corpus: None,
+    },
 ];
 
 /// Kernels that are no stage of a replay: `triptych bench` compares and measures them.
@@ -181,6 +198,14 @@ const fn in_cells(name: &'static str, entries: &'static [&'static str]) -> Stage
         name,
         compute: Twin::Entries(entries),
         fragment: Twin::None("works on triangles, cells and rays, not on fragments"),
+    }
+}
+
+const fn of_pixels(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on pixels and texels that know their triangle"),
     }
 }
 
