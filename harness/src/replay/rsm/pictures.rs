@@ -1,8 +1,9 @@
 //! What people look at: each frame with and without indirect shadows.
 //!
-//! All pictures of a scene are multiplied by one number and then encoded as sRGB, so that they
-//! compare: the largest power of two that leaves 99 of 100 components of the brightest, that
-//! without indirect shadows, within 1.
+//! All pictures of a scene are toned alike, so that they compare: linear colours are
+//! multiplied by one number, the power of two that brings the geometric mean of what is lit
+//! without indirect shadows nearest to a middle grey; `x / (1 + x)` keeps what is bright from
+//! being cut off (Reinhard et al. 2002, equations 1 to 3); then they are encoded as sRGB.
 
 use super::embree::{Seen, rmse, values};
 use super::spec::RsmRun;
@@ -26,7 +27,7 @@ pub(super) fn spec(run: &RsmRun<'_>) -> Vec<Picture> {
             caption: "The same as if nothing were in the way of the bounce: buffer A alone.".into(),
             image: exposed(run, &without, exposure),
         });
-        let [with, without] = [with, without].map(|p| single(&p, 1.0));
+        let [with, without] = [with, without].map(|p| single(&p));
         pictures.push(Picture {
             title: title("indirect shadows"),
             caption: "What the blockers keep away: the largest difference of a component of \
@@ -75,29 +76,43 @@ pub(super) fn title_of(run: &RsmRun<'_>, title: &str, number: usize) -> String {
     }
 }
 
+/// What the geometric mean becomes, about.
+const MIDDLE_GREY: f64 = 0.18;
+
 /// By what all pictures are multiplied.
 pub(super) fn exposure(run: &RsmRun<'_>) -> f64 {
-    let pictures = run.frames.iter().map(|frame| values(&run.unblocked(frame)));
-    let all = pictures.flat_map(|picture| picture.into_iter().flatten().collect::<Vec<_>>());
-    let mut all: Vec<f64> = all.filter(|c| *c > 0.0).collect();
-    all.sort_unstable_by(f64::total_cmp);
-    match all.get(all.len().saturating_sub(all.len() / 100 + 1)) {
-        Some(bright) => libm::exp2(libm::floor(-libm::log2(*bright))),
-        None => 1.0,
+    let (mut sum, mut lit) = (0.0, 0.0);
+    for frame in &run.frames {
+        for [r, g, b] in values(&run.unblocked(frame)) {
+            let brightest = r.max(g).max(b);
+            if brightest > 0.0 {
+                sum += libm::log2(brightest);
+                lit += 1.0;
+            }
+        }
     }
+    if lit == 0.0 {
+        return 1.0;
+    }
+    libm::exp2(libm::round(libm::log2(MIDDLE_GREY) - sum / lit))
 }
 
 /// A picture as all are shown.
 pub(super) fn exposed(run: &RsmRun<'_>, pixels: &[[f64; 3]], exposure: f64) -> Image {
-    let image = picture::linear(run.setup.eye.size, &single(pixels, exposure));
+    let toned = |c: f64| c * exposure / (1.0 + c * exposure);
+    let toned: Vec<_> = pixels.iter().map(|pixel| pixel.map(toned)).collect();
+    let image = picture::linear(run.setup.eye.size, &single(&toned));
     Image {
-        note: format!("{}; linear colour times {exposure}, as sRGB", image.note),
+        note: format!(
+            "{}; x = {exposure} times the linear colour, shown as x / (1 + x) in sRGB",
+            image.note
+        ),
         ..image
     }
 }
 
-fn single(pixels: &[[f64; 3]], factor: f64) -> Vec<[f32; 3]> {
+fn single(pixels: &[[f64; 3]]) -> Vec<[f32; 3]> {
     #[expect(clippy::cast_possible_truncation, reason = "for showing")]
-    let pixel = |pixel: &[f64; 3]| pixel.map(|c| (c * factor) as f32);
+    let pixel = |pixel: &[f64; 3]| pixel.map(|c| c as f32);
     pixels.iter().map(pixel).collect()
 }
