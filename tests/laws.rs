@@ -22,6 +22,7 @@
 //! | `rsm::pictures` | blurs and composed pictures: constants, edges, nothing negative |
 //! | `rsm::closed_forms` | a patch over a ceiling, umbras, lamps; what goes through a map |
 //! | `rsm::loose` | whatever WGSL allows stays inside the bounds of all stages, and comes near them |
+//! | `rsm::adapters` | random scenes give the spec's decisions, and colours within bounds, on every adapter |
 //! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
@@ -31,6 +32,8 @@
 
 #[path = "laws/abuffer.rs"]
 mod abuffer;
+#[path = "laws/adapters.rs"]
+mod adapters;
 #[path = "laws/bound.rs"]
 mod bound;
 #[path = "laws/camera.rs"]

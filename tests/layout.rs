@@ -4,27 +4,24 @@
 
 #[path = "layout/constants.rs"]
 mod constants;
-
-use std::mem::{offset_of, size_of};
+#[path = "layout/records.rs"]
+mod records;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{
     AddressSpace, BinaryOperator, Expression, Function, Module, ScalarKind, ShaderStage,
     StorageAccess, TypeInner,
 };
-use triptych_gpu::abuffer::PROGRESS;
-use triptych_gpu::frame::{Frame, WORKGROUP};
-use triptych_gpu::grid::Cells;
+use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 6] = ["abuffer", "ceiling", "grid", "nearest", "raster", "vertex"];
+const ROOTS: [&str; 7] = [
+    "abuffer", "ceiling", "grid", "nearest", "raster", "rsm", "vertex",
+];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
 const STORAGE_BUFFERS: usize = 8;
-
-/// Fields with their offsets, and the size in bytes.
-type Layout = (Vec<(String, u32)>, u32);
 
 /// A program and where it comes from.
 struct Root {
@@ -50,29 +47,6 @@ fn programs() -> Vec<Root> {
     all.map(link).collect()
 }
 
-fn layout(module: &Module, name: &str) -> Option<Layout> {
-    let (_, ty) = module
-        .types
-        .iter()
-        .find(|(_, t)| t.name.as_deref() == Some(name))?;
-    let TypeInner::Struct { members, span } = &ty.inner else {
-        panic!("{name} is no struct");
-    };
-    let field = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset);
-    Some((members.iter().map(field).collect(), *span))
-}
-
-/// A struct of 32-bit words.
-fn words(names: &[&str]) -> Layout {
-    let fields: Vec<(String, u32)> = (0..)
-        .step_by(4)
-        .zip(names)
-        .map(|(at, n)| (n.to_string(), at))
-        .collect();
-    let size = 4 * u32::try_from(names.len()).expect("few");
-    (fields, size)
-}
-
 /// Looks something up in every program, and demands that it is as expected wherever it
 /// occurs, and that it occurs.
 fn everywhere<T: PartialEq + std::fmt::Debug>(
@@ -88,55 +62,6 @@ fn everywhere<T: PartialEq + std::fmt::Debug>(
         }
     }
     assert!(seen > 0, "{name} is in no program");
-}
-
-#[test]
-fn the_frame_is_that_of_rust() {
-    macro_rules! fields {
-        ($($field:ident)*) => {
-            vec![$((stringify!($field).to_owned(), offset_of!(Frame, $field))),*]
-        };
-    }
-    let fields = fields!(
-        width height bits capacity first_row rows work_first work_count items guard_x guard_y
-        depth_test background
-    );
-    let word = |at: usize| u32::try_from(at).expect("a small struct");
-    let fields = fields
-        .into_iter()
-        .map(|(name, at)| (name, word(at)))
-        .collect();
-    everywhere("Frame", &(fields, word(size_of::<Frame>())), layout);
-    let names = [
-        "x", "y", "z", "overlap", "items", "first", "capacity", "run", "any",
-    ];
-    let (mut cells, _) = words(&names);
-    cells.push(("unused".to_owned(), 48));
-    assert_eq!(size_of::<Cells>(), 64, "a block of 16 words");
-    everywhere("Cells", &(cells, 64), layout);
-}
-
-#[test]
-fn records_are_the_words_that_the_host_reads() {
-    everywhere("Node", &words(&["key", "next", "prim", "mask"]), layout);
-    everywhere(
-        "Fragment",
-        &words(&["pixel", "prim", "key", "mask"]),
-        layout,
-    );
-    everywhere("Entry", &words(&["prim", "next"]), layout);
-    everywhere("Hit", &words(&["prim", "time", "state", "at"]), layout);
-    let ray = [
-        ("origin", 0),
-        ("segment", 12),
-        ("direction", 16),
-        ("unused", 28),
-    ];
-    let ray = ray.map(|(name, at)| (name.to_owned(), at)).to_vec();
-    everywhere("Ray", &(ray, 32), layout);
-    everywhere("Vertex", &words(&["x", "y", "z", "instance"]), layout);
-    let size = |module: &Module, name: &str| Some(u64::from(layout(module, name)?.1));
-    everywhere("Progress", &PROGRESS, size);
 }
 
 #[test]

@@ -24,7 +24,7 @@ pub const SHORT: u32 = 64;
 /// What an invocation does at most within a dispatch. Twin: `STEPS` in `cells.wgsl`.
 pub const STEPS: u32 = 16_384;
 
-/// A ray that has not started, and one that is done. Twins in `search.wgsl`.
+/// A ray that has not started, and one that is done. Twins in `ray.wgsl`.
 pub const FRESH: u32 = u32::MAX;
 /// See [`FRESH`].
 pub const TRACED: u32 = u32::MAX - 1;
@@ -76,7 +76,7 @@ pub struct Linked {
     pub attempts: u32,
 }
 
-/// What a ray met. Twin: `Hit` in `search.wgsl`.
+/// What a ray met. Twin: `Hit` in `ray.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Hit {
@@ -90,14 +90,14 @@ pub struct Hit {
     pub at: u32,
 }
 
-/// A ray as kernels read it. Twin: `Ray` in `march.wgsl`.
+/// A ray as kernels read it. Twin: `Ray` in `ray.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 struct Packed {
     origin: [f32; 3],
     segment: u32,
     direction: [f32; 3],
-    unused: u32,
+    owner: u32,
 }
 
 impl From<&Ray> for Packed {
@@ -106,7 +106,7 @@ impl From<&Ray> for Packed {
             origin: exact(ray.origin),
             segment: ray.segment.into(),
             direction: exact(ray.direction),
-            unused: 0,
+            owner: 0,
         }
     }
 }

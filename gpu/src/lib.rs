@@ -8,12 +8,14 @@
 pub mod abuffer;
 pub mod ceiling;
 pub mod context;
+mod dispatch;
 pub mod error;
 pub mod frame;
 pub mod grid;
 pub mod kernel;
 pub mod pass;
 pub mod raster;
+pub mod rsm;
 pub mod timer;
 pub mod vertex;
 pub mod wgsl;

@@ -1,14 +1,7 @@
 // A ray's way through the cells (Amanatides and Woo 1987): integer cells, and the time of each
 // boundary worked out anew. Up to 2^23 in size, boundaries and origins have exact differences;
 // their times are off by a division and a product, for which cells are widened.
-
-struct Ray {
-    origin: vec3<f32>,
-    // 1 if it ends at origin + direction.
-    segment: u32,
-    direction: vec3<f32>,
-    unused: u32,
-}
+//#import ray
 
 // Later than anything that a ray meets within the lattice.
 const NEVER: f32 = 3.0e38;

@@ -5,22 +5,8 @@
 //#import runs
 
 const EOL: u32 = 0xffffffffu;
-const NOTHING: u32 = 0xffffffffu;
-const FRESH: u32 = 0xffffffffu;
-const TRACED: u32 = 0xfffffffeu;
 
 @group(0) @binding(11) var<storage, read> rays: array<Ray>;
-
-// What a ray has met, and where it is if it is not done.
-struct Hit {
-    // The triangle, or NOTHING.
-    prim: u32,
-    time: f32,
-    // FRESH, TRACED, or the cell, ten bits an axis.
-    state: u32,
-    // Next entry of the cell's list.
-    at: u32,
-}
 
 @group(0) @binding(12) var<storage, read_write> hits: array<Hit>;
 

@@ -119,7 +119,7 @@ pub const FAMILIES: &[Family] = &[
             of_pixels("place", &["place"]),
             of_pixels("direct", &["direct"]),
             of_pixels("gather", &["gather"]),
-            of_pixels("block", &["block", "block_sum"]),
+            of_pixels("block", &["block_rays", "block_bits", "block_sum"]),
             of_pixels("blur", &["blur"]),
             of_pixels("compose", &["compose"]),
         ],

@@ -1,5 +1,7 @@
 //! Indirect light from a reflective shadow map, and its shadows.
 
+#[path = "rsm/adapters.rs"]
+mod adapters;
 #[path = "rsm/closed_forms.rs"]
 mod closed_forms;
 #[path = "rsm/extremes.rs"]
@@ -52,8 +54,8 @@ struct Scene {
 }
 
 impl Scene {
-    fn frame(&self) -> Frame {
-        let setting = Setting {
+    fn setting(&self) -> Setting<'_> {
+        Setting {
             model: &self.model,
             eye: &self.eye,
             lamp: &self.lamp,
@@ -61,8 +63,11 @@ impl Scene {
             grid: &self.grid,
             parameters: self.parameters,
             background: [0.25, 0.5, 0.75],
-        };
-        Frame::render(&setting).expect("within the limits")
+        }
+    }
+
+    fn frame(&self) -> Frame {
+        Frame::render(&self.setting()).expect("within the limits")
     }
 
     /// The same with other blockers.

@@ -8,6 +8,7 @@ use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
+use triptych_spec::rsm::{COARSE_BITS, PLACE_MAX};
 use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
 
 use super::everywhere;
@@ -40,6 +41,8 @@ fn constants_are_those_of_rust() {
         ("SHORT", i64::from(SHORT)),
         ("FRESH", i64::from(FRESH)),
         ("TRACED", i64::from(TRACED)),
+        ("PLACE_MAX", i64::from(PLACE_MAX)),
+        ("COARSE_BITS", i64::from(COARSE_BITS)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

@@ -99,6 +99,18 @@ impl Gpu {
         Ok(items)
     }
 
+    /// The first word of a buffer, which is 0 afterwards.
+    ///
+    /// # Errors
+    /// As [`Gpu::read`].
+    pub fn take(&self, buffer: &wgpu::Buffer) -> Result<u32, GpuError> {
+        let word: Vec<u32> = self.read(buffer, 1)?;
+        let mut encoder = self.encoder();
+        encoder.clear_buffer(buffer, 0, Some(4));
+        self.submit(encoder)?;
+        Ok(word[0])
+    }
+
     /// Overwrites the beginning of a buffer.
     fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) -> Result<(), GpuError> {
         for (to, part) in (0_u64..).step_by(STAGING).zip(bytes.chunks(STAGING)) {

@@ -1,19 +1,16 @@
 //! Buffers of a grid, and dispatches over them.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use triptych_spec::grid::axis::Axis;
 use triptych_spec::grid::{Blockers, Membership};
 
 use super::{Cells, exact};
 use crate::context::Gpu;
+use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
-use crate::kernel::{Kernels, Pipeline};
-use crate::timer::Writes;
-
-/// Most workgroups along a dimension of a dispatch (WebGPU's default).
-const GROUPS: u32 = 65_535;
+use crate::kernel::Kernels;
 
 /// What all stages share.
 pub struct Device<'g> {
@@ -99,12 +96,8 @@ impl<'g> Device<'g> {
         groups: u32,
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Duration, GpuError> {
-        let pass = self.ready_groups(entry, cells, groups, buffers)?;
-        let mut encoder = self.gpu.encoder();
-        pass.record(&mut encoder, None);
-        let start = Instant::now();
-        self.gpu.submit(encoder)?;
-        Ok(start.elapsed())
+        self.ready_groups(entry, cells, groups, buffers)?
+            .run(self.gpu)
     }
 
     /// One invocation for each item, to be recorded.
@@ -125,7 +118,6 @@ impl<'g> Device<'g> {
         groups: u32,
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Ready, GpuError> {
-        let kernel = self.kernels.compute(self.gpu, "grid", entry)?;
         let uniform = self.gpu.uniform("cells", &cells)?;
         let mut all = vec![
             ("cells", &uniform),
@@ -134,23 +126,12 @@ impl<'g> Device<'g> {
             ("unfinished", &self.unfinished),
         ];
         all.extend_from_slice(buffers);
-        let Pipeline::Compute(pipeline) = &kernel.pipeline else {
-            unreachable!("grids have compute kernels only");
-        };
-        Ok(Ready {
-            group: kernel.bind(self.gpu, &all),
-            pipeline: pipeline.clone(),
-            groups,
-        })
+        Ready::new(self.gpu, self.kernels, ("grid", entry), groups, &all)
     }
 
     /// What kernels left to be done, which is nothing afterwards.
     pub(super) fn take_unfinished(&self) -> Result<u32, GpuError> {
-        let left: Vec<u32> = self.gpu.read(&self.unfinished, 1)?;
-        let mut encoder = self.gpu.encoder();
-        encoder.clear_buffer(&self.unfinished, 0, None);
-        self.gpu.submit(encoder)?;
-        Ok(left[0])
+        self.gpu.take(&self.unfinished)
     }
 
     /// Runs a kernel that goes through the cells of each triangle, until it has been through
@@ -175,28 +156,5 @@ impl<'g> Device<'g> {
             }
         }
         Ok(time)
-    }
-}
-
-/// A dispatch that can be recorded any number of times.
-pub(super) struct Ready {
-    pipeline: wgpu::ComputePipeline,
-    group: wgpu::BindGroup,
-    groups: u32,
-}
-
-impl Ready {
-    /// Records a pass of its own: what it writes is there for the next.
-    pub(super) fn record(&self, encoder: &mut wgpu::CommandEncoder, writes: Option<Writes<'_>>) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: None,
-            timestamp_writes: writes.map(Writes::compute),
-        });
-        if self.groups > 0 {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &self.group, &[]);
-            let rows = self.groups.div_ceil(GROUPS);
-            pass.dispatch_workgroups(self.groups.min(GROUPS), rows, 1);
-        }
     }
 }

@@ -173,17 +173,22 @@ impl<'g> Stages<'g> {
 
     /// Stage `trace`: what each ray meets.
     pub fn trace(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
-        let bricks = Cells {
-            items: self.device.bricks(),
-            ..self.device.cells
-        };
-        let buffers = [("offsets", &self.offsets), ("bricks", &self.bricks)];
-        self.time = self.device.each("trace_bricks", bricks, &buffers)?;
+        self.time = self.mark_bricks()?;
         let mut hits = Vec::with_capacity(rays.len());
         for rays in rays.chunks(RAYS) {
             hits.extend(self.trace_part(rays, query)?);
         }
         Ok(hits)
+    }
+
+    /// Works out which bricks list anything.
+    pub(crate) fn mark_bricks(&self) -> Result<Duration, GpuError> {
+        let bricks = Cells {
+            items: self.device.bricks(),
+            ..self.device.cells
+        };
+        let buffers = [("offsets", &self.offsets), ("bricks", &self.bricks)];
+        self.device.each("trace_bricks", bricks, &buffers)
     }
 
     /// Dispatches after which every ray is done: it passes a cell once, and with it each entry.
@@ -199,33 +204,52 @@ impl<'g> Stages<'g> {
         let items = u32::try_from(rays.len()).expect("at most RAYS");
         let rays = gpu.upload("rays", &packed)?;
         let hits = gpu.upload("hits", &vec![fresh(); packed.len()])?;
+        let time = self.search(&rays, &hits, items, query)?;
+        self.time += time;
+        let hits: Vec<Hit> = gpu.read(&hits, packed.len())?;
+        match hits.iter().all(|hit| hit.state == TRACED) {
+            true => Ok(hits),
+            false => Err(self.endless()),
+        }
+    }
+
+    /// Traces the first `items` of some rays on the device, whose hits start afresh, until all
+    /// are done.
+    pub(crate) fn search(
+        &mut self,
+        rays: &wgpu::Buffer,
+        hits: &wgpu::Buffer,
+        items: u32,
+        query: Query,
+    ) -> Result<Duration, GpuError> {
         let buffers = [
             ("offsets", &self.offsets),
             ("prims", &self.prims),
             ("bricks", &self.bricks),
-            ("rays", &rays),
-            ("hits", &hits),
+            ("rays", rays),
+            ("hits", hits),
         ];
         let cells = Cells {
             items,
             any: (query == Query::Any).into(),
             ..self.device.cells
         };
+        let mut time = Duration::ZERO;
         self.dispatches = 0;
         for _ in 0..self.rounds() {
             self.dispatches += 1;
-            self.time += self.device.each("trace", cells, &buffers)?;
+            time += self.device.each("trace", cells, &buffers)?;
             if self.device.take_unfinished()? == 0 {
-                break;
+                return Ok(time);
             }
         }
-        let hits: Vec<Hit> = gpu.read(&hits, packed.len())?;
-        match hits.iter().all(|hit| hit.state == TRACED) {
-            true => Ok(hits),
-            false => Err(GpuError::Endless {
-                adapter: gpu.name.clone(),
-                stage: "trace",
-            }),
+        Err(self.endless())
+    }
+
+    fn endless(&self) -> GpuError {
+        GpuError::Endless {
+            adapter: self.device.gpu.name.clone(),
+            stage: "trace",
         }
     }
 }

@@ -8,10 +8,11 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 use triptych_spec::grid::{Blockers, Membership};
 
-use super::device::{Device, Ready};
+use super::device::Device;
 use super::stages::fresh;
 use super::{Cells, Hit, Packed, SHORT, TILE};
 use crate::context::Gpu;
+use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
 use crate::timer::Timer;

@@ -57,10 +57,15 @@ fn invocation(stage: &Stage) -> (String, String) {
     let guard =
         |i: &str, items: &str| format!("    if {i} >= {items} {{\n        return;\n    }}\n");
     match (stage.file, stage.name) {
-        ("grid", _) => {
+        (file @ ("grid" | "rsm"), _) => {
             let groups = format!("{id}, @builtin(num_workgroups) groups: vec3<u32>");
             let item = format!("    let i = id.x + id.y * groups.x * {WORKGROUP}u;\n");
-            (groups, item + &guard("i", "cells.items"))
+            let told = if file == "grid" {
+                "cells"
+            } else {
+                "parameters"
+            };
+            (groups, item + &guard("i", &format!("{told}.items")))
         }
         (_, "sort" | "resolve") => (id.to_owned(), guard("id.x", "frame.width * frame.rows")),
         _ => (id.to_owned(), guard("id.x", "frame.items")),

@@ -22,7 +22,7 @@ const ROW: &str = "Compute: item `i` below frame.items is one row of one triangl
     rasteriser calls it for every covered pixel, with the triangle at location 0.";
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 13] = [
+pub const STAGES: [Stage; 21] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -140,6 +140,79 @@ pub const STAGES: [Stage; 13] = [
             what ray i meets, any triangle if cells.any is 1, or the nearest with its time, in hits[i]; its state \
             starts as 0xffffffff and ends as 0xfffffffe. Sets unfinished if it needs another \
             dispatch, before which hits are kept.",
+    },
+    Stage {
+        name: "gbuffer",
+        file: "rsm",
+        compute: &["gbuffer"],
+        fragment: &[],
+        contract: "seen[i] is the point of triangle sources[nearest[i]] that pixel i of the view \
+            sees, snapped to the nearest integers, kept in the triangle's box, and moved \
+            parameters.offset steps off its face to the side that is seen; its face is twice the \
+            triangle, and 1 more if its normal points away from the viewer. Where nearest[i] is \
+            0xffffffff, so is the face.",
+    },
+    Stage {
+        name: "rsm",
+        file: "rsm",
+        compute: &["rsm"],
+        fragment: &[],
+        contract: "lights[i] is what texel i of the light's map sees, as for gbuffer, with the \
+            unit normal on that side; intensities[i] is its weight times the lamp's strength \
+            times the face's colour.",
+    },
+    Stage {
+        name: "place",
+        file: "rsm",
+        compute: &["place"],
+        fragment: &[],
+        contract: "places[i] is the texel of the light's map and the depth key of the point of \
+            seen[i], both rounded down; known is 0 for what is not in front of the light, and \
+            where nothing is seen.",
+    },
+    Stage {
+        name: "direct",
+        file: "rsm",
+        compute: &["direct"],
+        fragment: &[],
+        contract: "lit[i] is the irradiance of seen[i] by the lamp, and 1, if it faces the lamp, \
+            lies in its map, and is at most parameters.bias keys behind keys there; else zeros.",
+    },
+    Stage {
+        name: "gather",
+        file: "rsm",
+        compute: &["gather"],
+        fragment: &[],
+        contract: "Adds to all_light[i] the irradiance of seen[i] by the texels of its kernel's \
+            parameters.rows rows from parameters.first on; row 0 starts from zero. Only texels \
+            count that face the point and are faced by it.",
+    },
+    Stage {
+        name: "block",
+        file: "rsm",
+        compute: &["block_rays", "block_bits", "block_sum"],
+        fragment: &[],
+        contract: "First pass: pair parameters.first + i of a pixel of buffer B and a texel of \
+            its kernel appends a ray to rays, and a fresh hit, if the texel would give light. \
+            After the search, second: the bit of ray i's pair, if it met anything. Third: as \
+            gather, of pixel i of buffer B, for texels whose bits are set.",
+    },
+    Stage {
+        name: "blur",
+        file: "rsm",
+        compute: &["blur"],
+        fragment: &[],
+        contract: "blurred[i] is the mean of blocked over the pixels of buffer B at most \
+            parameters.blur from pixel i that see the same surface.",
+    },
+    Stage {
+        name: "compose",
+        file: "rsm",
+        compute: &["compose"],
+        fragment: &[],
+        contract: "picture[i] is the colour of seen[i] times the sum of lit and of all_light \
+            less blurred, at least 0: that of the nearest pixel of buffer B around it that sees \
+            the same surface, else of the nearest; the background where nothing is seen.",
     },
 ];
 

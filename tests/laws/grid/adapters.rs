@@ -1,13 +1,8 @@
 //! Random grids on every adapter, with words and with native integers: the spec's lists to the
 //! bit, and its answer to every ray.
 
-use std::sync::OnceLock;
-
 use proptest::prelude::*;
-use triptych_gpu::context::{Gpu, adapters};
 use triptych_gpu::grid::{Device, Stages};
-use triptych_gpu::kernel::Kernels;
-use triptych_gpu::wgsl::Sources;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::hit::{crossing, timed};
 use triptych_spec::grid::ray::Ray;
@@ -15,32 +10,8 @@ use triptych_spec::grid::trace::{Query, closest};
 use triptych_spec::grid::{Blockers, Cells, Grid, Membership, count};
 
 use super::aimed;
+use crate::adapters::devices;
 use crate::config;
-
-/// Opened once, with kernels of both kinds.
-fn devices() -> &'static [(Gpu, Vec<Kernels>)] {
-    static DEVICES: OnceLock<Vec<(Gpu, Vec<Kernels>)>> = OnceLock::new();
-    DEVICES.get_or_init(|| {
-        let open = |adapter: wgpu::Adapter| {
-            let gpu = Gpu::open(&adapter).expect("a device");
-            let natives = [false, true]
-                .into_iter()
-                .take(1 + usize::from(gpu.has_int64()));
-            let kernels = natives.map(|native| Kernels::new(Sources::shipped(native)));
-            let kernels = kernels.collect();
-            (gpu, kernels)
-        };
-        let all: Vec<_> = adapters(wgpu::Backends::VULKAN)
-            .into_iter()
-            .map(open)
-            .collect();
-        assert!(
-            !all.is_empty(),
-            "no adapter; `triptych doctor` says what is missing"
-        );
-        all
-    })
-}
 
 /// Each stage from the spec's input.
 fn agrees(

@@ -46,7 +46,7 @@ fn worst(colour: &Colour, observed: [f32; 3]) -> f64 {
 }
 
 /// Inputs of a stage: rounded once.
-fn given(colours: &[Colour]) -> Vec<Colour> {
+pub fn given(colours: &[Colour]) -> Vec<Colour> {
     let round = |c: &Colour| {
         let values = f32s(c.map(|c| c.value));
         values.map(|c| Bounded {

@@ -5,7 +5,7 @@ use triptych_spec::camera::{Camera, Projection};
 use triptych_spec::grid::lattice::Lattice;
 use triptych_spec::grid::resolution::Resolution;
 use triptych_spec::grid::{Blockers, Grid, Membership};
-use triptych_spec::rsm::{Lamp, Model, Parameters, View};
+use triptych_spec::rsm::{EDGE_MAX, Lamp, Model, Parameters, View};
 use triptych_spec::scene::Size;
 
 use super::{Corners, Scene, quad, rows};
@@ -129,7 +129,8 @@ fn parameters() -> impl Strategy<Value = Parameters> {
         0..1_u32 << 24,
         clamp,
         2..=32_u32,
-        0..1_u32 << 12,
+        // Steps, or a good part of the scene: then faces that meet at an angle are near.
+        prop_oneof![0..1_u32 << 12, 0..=EDGE_MAX],
     )
         .prop_map(
             |((radius, stride), divisor, blur, bias, clamp, offset, edge)| Parameters {

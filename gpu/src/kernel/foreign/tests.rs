@@ -37,6 +37,7 @@ fn every_skeleton_is_a_kernel() {
         );
         let block = match stage.file {
             "grid" => "cells: Cells",
+            "rsm" => "parameters: Parameters",
             _ => "frame: Frame",
         };
         let block = format!("@binding(0) var<uniform> {block}");

@@ -1,0 +1,63 @@
+//! Dispatches of compute kernels, each a pass of its own.
+
+use std::time::{Duration, Instant};
+
+use crate::context::Gpu;
+use crate::error::GpuError;
+use crate::kernel::{Kernels, Pipeline};
+use crate::timer::Writes;
+
+/// Most workgroups along a dimension of a dispatch (WebGPU's default).
+const GROUPS: u32 = 65_535;
+
+/// A dispatch that can be recorded any number of times.
+pub(crate) struct Ready {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    groups: u32,
+}
+
+impl Ready {
+    /// So many workgroups of a file's entry point. Buffers that it does not use are left out.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        kernels: &Kernels,
+        (file, entry): (&str, &str),
+        groups: u32,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Self, GpuError> {
+        let kernel = kernels.compute(gpu, file, entry)?;
+        let Pipeline::Compute(pipeline) = &kernel.pipeline else {
+            unreachable!("it was asked for as a compute kernel");
+        };
+        Ok(Self {
+            group: kernel.bind(gpu, buffers),
+            pipeline: pipeline.clone(),
+            groups,
+        })
+    }
+
+    /// Records a pass of its own: what it writes is there for the next. Workgroups beyond what
+    /// a row holds go to further rows, and may be more than were asked for.
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, writes: Option<Writes<'_>>) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: writes.map(Writes::compute),
+        });
+        if self.groups > 0 {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.group, &[]);
+            let rows = self.groups.div_ceil(GROUPS);
+            pass.dispatch_workgroups(self.groups.min(GROUPS), rows, 1);
+        }
+    }
+
+    /// Runs it, and waits for the end.
+    pub(crate) fn run(&self, gpu: &Gpu) -> Result<Duration, GpuError> {
+        let mut encoder = gpu.encoder();
+        self.record(&mut encoder, None);
+        let start = Instant::now();
+        gpu.submit(encoder)?;
+        Ok(start.elapsed())
+    }
+}
