@@ -101,6 +101,15 @@ impl Plan {
     }
 }
 
+/// What a scene needs.
+pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
+    match loaded.chain() {
+        Chain::Frame => Plan::new(&loaded.scene, skip).passes,
+        Chain::Rays => GridPlan::new(loaded, skip).passes,
+        Chain::Indirect => RsmPlan::new(loaded, skip).passes,
+    }
+}
+
 /// What a scene with a grid needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GridPlan {
@@ -131,5 +140,51 @@ impl GridPlan {
     pub fn skipped(&self) -> Option<String> {
         let idle = self.passes.iter().find(|pass| !pass.runs)?;
         Some(format!("plan: {}", idle.reason))
+    }
+}
+
+/// What a scene with an `[rsm]` needs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RsmPlan {
+    /// Every pass of the family, in order.
+    pub passes: Vec<Pass>,
+}
+
+impl RsmPlan {
+    /// Without surfaces there is no light to gather; without blockers no grid, no buffer B and
+    /// nothing to blur; with a blur over no neighbours, buffer B is what it was.
+    pub fn new(loaded: &Loaded, skip: bool) -> Self {
+        let [seen, blocking] = loaded.parts();
+        let radius = loaded.file.rsm.as_ref().map_or(0, |r| r.get_ref().blur.0);
+        let see = || Ok(format!("{seen} triangles are seen"));
+        let needed = |name: &str| match name {
+            "gbuffer" | "compose" => see(),
+            _ if seen == 0 => Err("nothing is seen"),
+            "block" | "blur" if blocking == 0 => Err("nothing blocks indirect light"),
+            "blur" if radius == 0 => Err("a mean over one pixel is that pixel"),
+            "block" | "blur" => Ok(format!("{blocking} triangles block indirect light")),
+            _ => see(),
+        };
+        let pass = |stage: &crate::registry::Stage| {
+            let needed = needed(stage.name);
+            Pass {
+                name: stage.name,
+                runs: needed.is_ok() || !skip,
+                reason: match (needed, skip) {
+                    (Ok(why), _) => why,
+                    (Err(why), true) => why.to_owned(),
+                    (Err(why), false) => format!("{why}, but nothing is skipped"),
+                },
+            }
+        };
+        Self {
+            passes: stages_of(Chain::Indirect).map(pass).collect(),
+        }
+    }
+
+    /// Why a pass does not run; `None` if it does.
+    pub fn skipped(&self, name: &str) -> Option<String> {
+        let pass = self.passes.iter().find(|p| p.name == name)?;
+        (!pass.runs).then(|| format!("plan: {}", pass.reason))
     }
 }

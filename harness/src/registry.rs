@@ -123,7 +123,7 @@ pub const FAMILIES: &[Family] = &[
             of_pixels("blur", &["blur"]),
             of_pixels("compose", &["compose"]),
         ],
-        no_corpus: Some("random scenes of tests/laws/rsm.rs go through it"),
+        no_corpus: None,
     },
 ];
 

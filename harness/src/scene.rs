@@ -5,8 +5,10 @@ pub mod file;
 mod fit;
 mod flatten;
 pub mod grid;
+pub mod rsm;
 mod shade;
 mod source;
+mod surface;
 #[cfg(test)]
 mod tests;
 pub mod value;
@@ -45,7 +47,7 @@ mesh = []
 pub struct Loaded {
     /// `family/case`.
     pub name: String,
-    /// `raster`, `abuffer` or `grid`.
+    /// `raster`, `abuffer`, `grid` or `rsm`.
     pub family: String,
     /// The scene as written.
     pub file: SceneFile,
@@ -184,8 +186,9 @@ fn of_parsed(
     let places = parsed.file.expect.check_places(parsed.file.size.0);
     places.map_err(|(span, message)| parsed.error(span, message))?;
     digest.update(parsed.file.seed.to_le_bytes());
-    let meshes = source::load_all(intake, &parsed, &mut digest)?;
-    let (scene, world) = flatten::flatten(&parsed, &meshes)?;
+    rsm::check(&parsed)?;
+    let mut meshes = source::load_all(intake, &parsed, &mut digest)?;
+    let (scene, world) = flatten::flatten(&parsed, &mut meshes)?;
     let mut stats = source::stats(&meshes);
     stats.sha256 = hex(&digest.finalize());
     Ok(Loaded {

@@ -45,13 +45,13 @@ mod same;
 mod sum;
 mod view;
 
-pub use block::{Blocked, block};
+pub use block::{Blocked, block, fine};
 pub use blur::{Coarse, blur};
 pub use compose::compose;
 pub use direct::{Direct, direct};
 pub use frame::{Frame, Setting};
 pub use gather::gather;
-pub use kernel::{faces, term};
+pub use kernel::{faces, term, texels};
 pub use lamp::{Lamp, Light, Rsm, rsm};
 pub use model::{COARSE_BITS, Face, Model};
 pub use parameters::{

@@ -117,13 +117,14 @@ impl Facts {
     }
 }
 
-fn runs(passes: &[Pass]) -> Vec<String> {
+/// Names of the passes that run.
+pub(super) fn runs(passes: &[Pass]) -> Vec<String> {
     let run = passes.iter().filter(|pass| pass.runs);
     run.map(|pass| pass.name.to_owned()).collect()
 }
 
 /// First 16 digits of the SHA-256 of words, low byte first.
-fn hash(words: impl Iterator<Item = u32>) -> String {
+pub(super) fn hash(words: impl Iterator<Item = u32>) -> String {
     let mut digest = Sha256::new();
     for word in words {
         digest.update(word.to_le_bytes());

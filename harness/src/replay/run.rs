@@ -9,13 +9,15 @@ use super::facts::Facts;
 use super::gpu::Adapter;
 use super::grid::GridRun;
 use super::rows::Rows;
+use super::rsm::RsmRun;
 use super::spec::{SpecRun, Times, timed};
 use super::worst::{Errors, Worst};
 use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
 use crate::compare::{Judgement, compare};
 use crate::observe::{Analytic, Observed, Spec};
-use crate::plan::{GridPlan, Pass, Plan};
+use crate::plan::{Plan, passes};
+use crate::registry::Chain;
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
@@ -45,6 +47,8 @@ pub(super) struct Run<'a> {
     spec: Option<Rc<Observed<Spec, SpecRun>>>,
     /// The spec's results of a scene with a grid.
     pub(super) grid: Option<Rc<Observed<Spec, GridRun>>>,
+    /// The spec's results of a scene with indirect light.
+    pub(super) rsm: Option<Rc<Observed<Spec, RsmRun<'a>>>>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
     pub(super) sheets: Vec<Sheet>,
@@ -65,6 +69,7 @@ impl<'a> Run<'a> {
             plan: Plan::new(&loaded.scene, options.skip),
             spec: None,
             grid: None,
+            rsm: None,
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
             sheets: Vec::new(),
@@ -77,9 +82,11 @@ impl<'a> Run<'a> {
     }
 
     pub(super) fn all(mut self) -> Result<Outcome, Stop> {
-        match self.loaded.file.grid {
-            Some(_) => self.grid()?,
-            None => self.frame()?,
+        let chain = self.loaded.chain();
+        match chain {
+            Chain::Frame => self.frame()?,
+            Chain::Rays => self.grid()?,
+            Chain::Indirect => self.rsm()?,
         }
         if self.rows.rows.is_empty() {
             let reason = "no other leg was asked for".to_owned();
@@ -90,7 +97,8 @@ impl<'a> Run<'a> {
             .extend(causes.filter(|_| self.options.pictures));
         let width = self.loaded.scene.size.width;
         let worst = Worst::of(&self.rows, &self.errors, width);
-        if self.options.pictures && self.options.embree {
+        // Lists are what is looked at, which other scenes have none of.
+        if self.options.pictures && self.options.embree && chain == Chain::Frame {
             self.look_again(&worst)?;
         }
         self.rows.rows.sort_by_key(column);
@@ -272,14 +280,6 @@ impl<'a> Run<'a> {
         let spec = self.spec(SUBPIXEL_BITS)?;
         embree::run_world(self.loaded, self.options.world, &spec, &mut self.rows);
         Ok(())
-    }
-}
-
-/// What a scene needs.
-pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
-    match loaded.file.grid {
-        Some(_) => GridPlan::new(loaded, skip).passes,
-        None => Plan::new(&loaded.scene, skip).passes,
     }
 }
 

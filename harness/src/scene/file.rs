@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::expect::Expect;
 use super::grid::Grid;
+use super::rsm::{Motion, Rsm};
 use super::value::{
     Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
 };
@@ -47,6 +48,8 @@ pub struct SceneFile {
     pub abuffer: Abuffer,
     /// Its triangles block rays; with it the family `grid` runs in place of the others.
     pub grid: Option<Grid>,
+    /// Its triangles light each other; with it the family `rsm` runs in place of the others.
+    pub rsm: Option<Spanned<Rsm>>,
     /// Shares of what may go unjudged.
     #[serde(default)]
     pub budget: Budget,
@@ -165,6 +168,12 @@ pub struct MeshEntry {
     /// Copies, each placed by its own transform after the mesh's.
     #[serde(default = "MeshEntry::once")]
     pub instances: Vec<Transform>,
+    /// With `[rsm]`: whether eye and lamp see it; true if left out.
+    pub seen: Option<bool>,
+    /// With `[rsm]`: whether it blocks indirect light; false if left out.
+    pub blocks: Option<bool>,
+    /// With `[rsm]`: how it moves from frame to frame.
+    pub moves: Option<Motion>,
 }
 
 impl Default for MeshEntry {
@@ -180,6 +189,9 @@ impl Default for MeshEntry {
             rotate: Point::default(),
             translate: Point::default(),
             instances: Self::once(),
+            seen: None,
+            blocks: None,
+            moves: None,
         }
     }
 }

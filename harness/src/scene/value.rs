@@ -123,6 +123,16 @@ impl TryFrom<Exactly<i64, 2>> for ImageSize {
     }
 }
 
+impl ImageSize {
+    /// As high as wide.
+    pub(super) fn square(side: u32) -> Self {
+        Self(Size {
+            width: side,
+            height: side,
+        })
+    }
+}
+
 /// How many nodes the first attempt at building lists may use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "toml::Value")]

@@ -30,8 +30,8 @@ impl Blocked {
     }
 }
 
-/// The picture's pixel that a pixel of buffer B is: the first of its square.
-pub(super) fn fine(pixel: usize, coarse: Size, eye: Size, divisor: u32) -> usize {
+/// The pixel of a picture of size `eye` that a pixel of buffer B is: the first of its square.
+pub fn fine(pixel: usize, coarse: Size, eye: Size, divisor: u32) -> usize {
     let (columns, divisor) = (coarse.width as usize, divisor as usize);
     let (x, y) = (pixel % columns * divisor, pixel / columns * divisor);
     y * eye.width as usize + x

@@ -8,7 +8,7 @@ use crate::scene::Size;
 
 /// The texels of the kernel around a place that belong to a map: each one's number in the
 /// kernel, and in the map. Row by row; texels beyond the map's border are left out.
-pub(super) fn texels(
+pub fn texels(
     parameters: &Parameters,
     [x, y]: [i32; 2],
     map: Size,

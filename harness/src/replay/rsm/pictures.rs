@@ -1,0 +1,118 @@
+//! What people look at: each frame with and without indirect shadows.
+//!
+//! All pictures of a scene are toned alike, so that they compare: linear colours are
+//! multiplied by one number, the power of two that brings the geometric mean of what is lit
+//! without indirect shadows nearest to a middle grey; `x / (1 + x)` keeps what is bright from
+//! being cut off (Reinhard et al. 2002, equations 1 to 3); then they are encoded as sRGB.
+
+use super::embree::{Seen, rmse, values};
+use super::spec::RsmRun;
+use crate::picture::{self, Image};
+use crate::report::Picture;
+
+/// The spec's pictures.
+pub(super) fn spec(run: &RsmRun<'_>) -> Vec<Picture> {
+    let exposure = exposure(run);
+    let mut pictures = Vec::new();
+    for (number, frame) in (1..).zip(&run.frames) {
+        let [with, without] = [values(&frame.frame.picture), values(&run.unblocked(frame))];
+        let title = |title: &str| title_of(run, title, number);
+        pictures.push(Picture {
+            title: title("spec"),
+            caption: "Direct light, and one bounce of it with indirect shadows: A - B.".into(),
+            image: exposed(run, &with, exposure),
+        });
+        pictures.push(Picture {
+            title: title("without indirect shadows"),
+            caption: "The same as if nothing were in the way of the bounce: buffer A alone.".into(),
+            image: exposed(run, &without, exposure),
+        });
+        let [with, without] = [with, without].map(|p| single(&p));
+        pictures.push(Picture {
+            title: title("indirect shadows"),
+            caption: "What the blockers keep away: the largest difference of a component of \
+                      the two."
+                .into(),
+            image: picture::difference(run.setup.eye.size, &without, &with),
+        });
+    }
+    pictures
+}
+
+/// Embree's pictures.
+pub(super) fn embree(run: &RsmRun<'_>, seen: &[Seen]) -> Vec<Picture> {
+    let exposure = exposure(run);
+    let mut pictures = Vec::new();
+    for (number, (frame, seen)) in (1..).zip(run.frames.iter().zip(seen)) {
+        let title = |title: &str| title_of(run, title, number);
+        let own = rmse(&values(&frame.frame.picture), &seen.reference);
+        let embree = rmse(&seen.picture, &seen.reference);
+        pictures.push(Picture {
+            title: title("embree"),
+            caption: format!(
+                "The same samples, with Embree saying what is blocked. RMSE against the \
+                 reference: {embree:.2e}."
+            ),
+            image: exposed(run, &seen.picture, exposure),
+        });
+        pictures.push(Picture {
+            title: title("reference"),
+            caption: format!(
+                "Without noise: every pixel traces its own rays to its whole kernel, nothing is \
+                 blurred, Embree says what is blocked. RMSE of the spec's picture against it: \
+                 {own:.2e}."
+            ),
+            image: exposed(run, &seen.reference, exposure),
+        });
+    }
+    pictures
+}
+
+/// A title, with the frame's number where there are several.
+pub(super) fn title_of(run: &RsmRun<'_>, title: &str, number: usize) -> String {
+    match run.frames.len() {
+        1 => title.to_owned(),
+        _ => format!("{title} frame {number}"),
+    }
+}
+
+/// What the geometric mean becomes, about.
+const MIDDLE_GREY: f64 = 0.18;
+
+/// By what all pictures are multiplied.
+pub(super) fn exposure(run: &RsmRun<'_>) -> f64 {
+    let (mut sum, mut lit) = (0.0, 0.0);
+    for frame in &run.frames {
+        for [r, g, b] in values(&run.unblocked(frame)) {
+            let brightest = r.max(g).max(b);
+            if brightest > 0.0 {
+                sum += libm::log2(brightest);
+                lit += 1.0;
+            }
+        }
+    }
+    if lit == 0.0 {
+        return 1.0;
+    }
+    libm::exp2(libm::round(libm::log2(MIDDLE_GREY) - sum / lit))
+}
+
+/// A picture as all are shown.
+pub(super) fn exposed(run: &RsmRun<'_>, pixels: &[[f64; 3]], exposure: f64) -> Image {
+    let toned = |c: f64| c * exposure / (1.0 + c * exposure);
+    let toned: Vec<_> = pixels.iter().map(|pixel| pixel.map(toned)).collect();
+    let image = picture::linear(run.setup.eye.size, &single(&toned));
+    Image {
+        note: format!(
+            "{}; x = {exposure} times the linear colour, shown as x / (1 + x) in sRGB",
+            image.note
+        ),
+        ..image
+    }
+}
+
+fn single(pixels: &[[f64; 3]]) -> Vec<[f32; 3]> {
+    #[expect(clippy::cast_possible_truncation, reason = "for showing")]
+    let pixel = |pixel: &[f64; 3]| pixel.map(|c| c as f32);
+    pixels.iter().map(pixel).collect()
+}
