@@ -5,6 +5,7 @@
 
 mod device;
 mod records;
+mod setup;
 mod stages;
 mod timed;
 

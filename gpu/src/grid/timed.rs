@@ -46,6 +46,19 @@ pub struct Shape {
     pub rounds: [u32; 2],
 }
 
+impl Shape {
+    /// Of a checked build, before any ray.
+    pub fn of(offsets: &[u32], chunks: u32) -> Self {
+        let lengths = offsets.windows(2).map(|run| run[1] - run[0]);
+        Self {
+            entries: offsets.last().copied().unwrap_or(0),
+            longest: lengths.max().unwrap_or(0),
+            chunks,
+            rounds: [0; 2],
+        }
+    }
+}
+
 /// Buffers and passes, ready to run.
 pub struct Timed<'g> {
     gpu: &'g Gpu,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::gpu::{Leg, Refusal};
 use super::spec::Core;
-use super::{WARM_UP, WARM_UP_WORK};
+use super::{AWAKE, WARM_UP, WARM_UP_WORK};
 
 /// How far the adapters are.
 #[derive(Default)]
@@ -52,6 +52,16 @@ pub(super) fn warm_up(
         });
         warm.rounds += 1;
     }
+}
+
+/// A board's clocks fall in pauses, and while set-up went on: it is at work for [`AWAKE`]
+/// before each round.
+pub(super) fn wake<E>(mut work: impl FnMut() -> Result<(), E>) -> Result<(), E> {
+    let start = Instant::now();
+    while start.elapsed() < AWAKE {
+        work()?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

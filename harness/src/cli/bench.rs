@@ -3,6 +3,7 @@
 pub(super) mod abuffer;
 mod grid;
 mod legs;
+mod rsm;
 mod stress;
 
 use super::Verdict;
@@ -16,6 +17,8 @@ pub enum Bench {
     Grid(grid::Args),
     /// Leg against leg: the spec beside adapters, the Embree leg beside bare calls
     Legs(legs::Args),
+    /// Indirect light: time of a frame against its error
+    Rsm(rsm::Args),
     /// What holds at the extremes, and by how much
     #[command(long_flag = "stress")]
     Stress(stress::Args),
@@ -26,6 +29,7 @@ pub fn run(bench: &Bench) -> anyhow::Result<Verdict> {
         Bench::Abuffer(args) => abuffer::run(args),
         Bench::Grid(args) => grid::run(args),
         Bench::Legs(args) => legs::run(args),
+        Bench::Rsm(args) => rsm::run(args),
         Bench::Stress(args) => stress::run(args),
     }
 }

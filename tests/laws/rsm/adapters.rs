@@ -229,13 +229,7 @@ fn shape(scene: &Scene, (gpu, kernels): (&Gpu, &Kernels)) -> Option<Shape> {
     let offsets = stages.scan().unwrap();
     let entries = *offsets.last().unwrap();
     stages.fill(entries, entries).unwrap();
-    let lengths = offsets.windows(2).map(|run| run[1] - run[0]);
-    Some(Shape {
-        entries,
-        longest: lengths.max().unwrap_or(0),
-        chunks: stages.chunks,
-        rounds: [0; 2],
-    })
+    Some(Shape::of(&offsets, stages.chunks))
 }
 
 proptest! {

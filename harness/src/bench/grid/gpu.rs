@@ -87,11 +87,8 @@ fn shape(
             ));
         }
     }
-    let lengths = offsets.windows(2).map(|run| run[1] - run[0]);
     Ok(Shape {
-        entries,
-        longest: lengths.max().unwrap_or(0),
-        chunks,
         rounds,
+        ..Shape::of(&offsets, chunks)
     })
 }

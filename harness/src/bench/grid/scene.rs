@@ -1,7 +1,5 @@
 //! A scene at a resolution.
 
-use std::time::Instant;
-
 use triptych_gpu::grid::Span;
 use triptych_gpu::kernel::Kernels;
 use triptych_spec::grid::ray::Ray;
@@ -11,7 +9,8 @@ use triptych_spec::grid::{Blockers, Grid, Membership};
 
 use super::super::counts;
 use super::super::legs::{Legs, Station, Taken, order};
-use super::super::{AWAKE, Ceilings, Progress, Spread, WARM_UP};
+use super::super::warm::wake;
+use super::super::{Ceilings, Progress, Spread, WARM_UP};
 use super::gpu::{Work, set_up};
 use super::run::Options;
 use super::{RAYS_OF_CPU, cpu, row};
@@ -270,14 +269,4 @@ impl<'a> Scene<'a> {
         let median = Spread::of(taken[0].seconds.iter().copied()).median;
         Ok(build.then_some(median))
     }
-}
-
-/// A board's clocks fall in pauses, and while set-up went on: it is at work for [`AWAKE`]
-/// before each round.
-fn wake<E>(mut work: impl FnMut() -> Result<(), E>) -> Result<(), E> {
-    let start = Instant::now();
-    while start.elapsed() < AWAKE {
-        work()?;
-    }
-    Ok(())
 }

@@ -1,0 +1,105 @@
+//! An adapter: checked once, then timed.
+
+use triptych_gpu::error::GpuError;
+use triptych_gpu::grid::{self, Shape};
+use triptych_gpu::raster::Path;
+use triptych_gpu::rsm::{Span, Timed, Work};
+use triptych_gpu::timer::Timer;
+use triptych_spec::grid::Membership;
+use triptych_spec::rsm::{Parameters, Setting};
+
+use super::super::legs::Station;
+use super::super::warm::wake;
+use super::super::{Spread, WARM_UP};
+use super::case::{Case, error};
+use super::judge::check;
+use super::{Row, run::row};
+use crate::calibrate::Grid;
+
+/// Measures one setting on one adapter.
+///
+/// # Errors
+/// What the device refuses; what is not the spec's, in words.
+pub(super) fn measure(
+    station: &Station<'_>,
+    case: &Case<'_>,
+    parameters: Parameters,
+    runs: u32,
+) -> Result<Row, String> {
+    let words = |e: GpuError| e.to_string();
+    let gpu = &station.adapter.gpu;
+    let setting = case.setting(parameters);
+    let work = Work {
+        drawn: case.drawn.each_ref(),
+        path: match station.adapter.grid {
+            Grid::Unknown => Path::Compute,
+            _ => Path::Fragment,
+        },
+        cells: shape(station, &setting).map_err(words)?,
+        setting,
+    };
+    let timed = Timed::new(gpu, &station.kernels, &work).map_err(words)?;
+    let spans: Vec<Span> = timed.spans().collect();
+    let whole = Timer::new(gpu, &station.clock, 1).map_err(words)?;
+    let count = u32::try_from(spans.len()).expect("few");
+    let each = Timer::new(gpu, &station.clock, count).map_err(words)?;
+    timed.time_whole(&whole).map_err(words)?;
+    let made = timed.made().map_err(words)?;
+    check(&setting, &case.base, &made).map_err(|why| format!("unlike the spec: {why}"))?;
+
+    let mut frames = Vec::new();
+    let mut parts = vec![Vec::new(); spans.len()];
+    for round in 0..WARM_UP + runs {
+        if gpu.info.device_type != wgpu::DeviceType::Cpu {
+            wake(|| timed.time_whole(&whole).map(drop)).map_err(words)?;
+        }
+        let frame = timed.time_whole(&whole).map_err(words)?;
+        let seconds = timed.time(&each).map_err(words)?;
+        if round >= WARM_UP {
+            frames.push(1000.0 * frame);
+            for (part, seconds) in parts.iter_mut().zip(seconds) {
+                part.push(1000.0 * seconds);
+            }
+        }
+    }
+    let picture: Vec<[f64; 3]> = made.picture.iter().map(|c| c.map(f64::from)).collect();
+    let named = spans.iter().map(|span| name(*span));
+    let parts = parts.into_iter().map(Spread::of);
+    Ok(Row {
+        leg: format!("gpu@{}", gpu.name),
+        clock: station.clock_name(),
+        rays: timed.rays.into(),
+        frame: Spread::of(frames),
+        parts: named.zip(parts).collect(),
+        ..row(case, parameters, error(&case.reference, &picture))
+    })
+}
+
+/// A part's name in tables.
+fn name(span: Span) -> &'static str {
+    match span {
+        Span::Eye => "eye",
+        Span::Map => "map",
+        Span::Cells => "cells",
+        Span::Direct => "direct",
+        Span::Gather => "A",
+        Span::Block => "B",
+        Span::Compose => "compose",
+    }
+}
+
+/// What the blockers' cells need, by a checked run.
+fn shape(station: &Station<'_>, setting: &Setting<'_>) -> Result<Option<Shape>, GpuError> {
+    let Setting { blockers, grid, .. } = setting;
+    if blockers.triangles.is_empty() {
+        return Ok(None);
+    }
+    let (gpu, kernels) = (&station.adapter.gpu, &station.adapter.kernels);
+    let device = grid::Device::new(gpu, kernels, blockers, &grid.axes, Membership::Box)?;
+    let mut stages = grid::Stages::new(device)?;
+    stages.count()?;
+    let offsets = stages.scan()?;
+    let entries = offsets.last().copied().unwrap_or(0);
+    stages.fill(entries, entries)?;
+    Ok(Some(Shape::of(&offsets, stages.chunks)))
+}
