@@ -12,6 +12,7 @@ pub mod opaque;
 pub mod order;
 pub mod passes;
 pub mod region;
+pub mod rsm;
 pub mod vertex;
 
 use std::collections::BTreeMap;

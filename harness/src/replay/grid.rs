@@ -91,14 +91,14 @@ impl Run<'_> {
         let capacity = self.loaded.file.grid.unwrap_or_default().capacity;
         let leg = GridLeg::new(adapter, path, &spec, capacity);
         if let Err(error) = leg.run(&mut self.rows) {
-            self.grid_refused(&label, &error);
+            self.leg_refused(&label, &error);
         }
         Ok(())
     }
 
     /// What kept a device from a result. All its buffers are sized by the scene: a limit is a
     /// reason to skip.
-    fn grid_refused(&mut self, label: &str, error: &GpuError) {
+    pub(super) fn leg_refused(&mut self, label: &str, error: &GpuError) {
         let reason = error.to_string();
         let cause = match error {
             GpuError::Limit { .. } | GpuError::Memory { .. } => {

@@ -2,13 +2,18 @@
 
 mod embree;
 mod facts;
+mod gpu;
 mod kernel;
 mod pictures;
 mod setup;
 mod spec;
 
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
+use triptych_gpu::raster::Path;
+
+use super::gpu::Adapter;
 use super::run::{Run, Stop};
 use crate::cache::Uses;
 use crate::compare::{Judgement, compare};
@@ -17,10 +22,11 @@ use crate::observe::{Embree, Observed, Spec};
 use crate::plan::RsmPlan;
 use crate::row::Class;
 use embree::{Seen, ask, rmse, values};
+pub use gpu::RsmLeg;
 pub use setup::{Parts, Setup};
 pub use spec::{RsmFrame, RsmRun, Times, WORK_MAX};
 
-impl<'a> Run<'a> {
+impl Run<'_> {
     /// The spec by itself, Embree, then every adapter.
     pub(super) fn rsm(&mut self) -> Result<(), Stop> {
         self.unit(Uses::Nothing, &["rsm", "spec"], |run| {
@@ -31,14 +37,58 @@ impl<'a> Run<'a> {
             }
             Ok(())
         })?;
-        match self.options.embree {
-            true => self.unit(Uses::Embree, &["rsm", "embree"], Self::rsm_vote),
+        if self.options.embree {
+            self.unit(Uses::Embree, &["rsm", "embree"], Self::rsm_vote)?;
+        }
+        match self.options.gpu {
+            true => self.on_adapters(Self::rsm_leg),
             false => Ok(()),
         }
     }
 
+    fn rsm_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
+        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let reason = match path {
+            Path::Fragment => Some("works on pixels and texels that know their triangle"),
+            Path::Native if adapter.native.is_none() => {
+                Some("no 64-bit integers: compute takes its place")
+            }
+            _ => None,
+        };
+        if let Some(reason) = reason {
+            let reason = reason.to_owned();
+            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+            return Ok(());
+        }
+        let plan = RsmPlan::new(self.loaded, self.options.skip);
+        let spec = self.rsm_spec()?;
+        let leg = RsmLeg {
+            adapter,
+            path,
+            spec: &spec,
+            plan: &plan,
+        };
+        let first = self.rows.spots.len();
+        match leg.run(&mut self.rows) {
+            Ok(made) => self.rsm_keep(&label, &spec.value, &made, first),
+            Err(error) => self.leg_refused(&label, &error),
+        }
+        Ok(())
+    }
+
+    /// Keeps a leg's pictures for the report. Spots from `first` on are its own.
+    fn rsm_keep(&mut self, label: &str, run: &RsmRun, made: &[Vec<[f32; 3]>], first: usize) {
+        let pixels: BTreeSet<u32> = self.rows.spots[first..].iter().map(|s| s.pixel).collect();
+        for (frame, made) in run.frames.iter().zip(made) {
+            self.errors.note(&pixels, &frame.frame.picture, made);
+        }
+        if self.options.pictures {
+            self.pictures.extend(pictures::gpu(run, label, made));
+        }
+    }
+
     /// The spec's results, computed when first asked for.
-    fn rsm_spec(&mut self) -> Result<Rc<Observed<Spec, RsmRun<'a>>>, Stop> {
+    fn rsm_spec(&mut self) -> Result<Rc<Observed<Spec, RsmRun>>, Stop> {
         if let Some(spec) = &self.rsm {
             return Ok(spec.clone());
         }
@@ -83,7 +133,7 @@ impl<'a> Run<'a> {
 }
 
 /// The votes of all frames as one, with what their pictures are off by.
-fn judge(run: &RsmRun<'_>, seen: &[Seen], budget: f64) -> Judgement {
+fn judge(run: &RsmRun, seen: &[Seen], budget: f64) -> Judgement {
     let mut total = crate::compare::embree::RayVote::default();
     for frame in seen {
         total.add(frame.vote.clone());

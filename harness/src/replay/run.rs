@@ -48,7 +48,7 @@ pub(super) struct Run<'a> {
     /// The spec's results of a scene with a grid.
     pub(super) grid: Option<Rc<Observed<Spec, GridRun>>>,
     /// The spec's results of a scene with indirect light.
-    pub(super) rsm: Option<Rc<Observed<Spec, RsmRun<'a>>>>,
+    pub(super) rsm: Option<Rc<Observed<Spec, RsmRun>>>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
     pub(super) sheets: Vec<Sheet>,
@@ -92,7 +92,10 @@ impl<'a> Run<'a> {
             let reason = "no other leg was asked for".to_owned();
             self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
-        let causes = pictures::causes(self.spec.as_deref(), &self.rows.spots);
+        let causes = match &self.rsm {
+            Some(spec) => spec.value.causes(&self.rows.spots),
+            None => pictures::causes(self.spec.as_deref(), &self.rows.spots),
+        };
         self.pictures
             .extend(causes.filter(|_| self.options.pictures));
         let width = self.loaded.scene.size.width;

@@ -39,7 +39,7 @@ pub struct Seen {
 ///
 /// # Errors
 /// The first error that Embree reports.
-pub fn ask(run: &RsmRun<'_>, frame: &RsmFrame) -> Result<Seen, EmbreeError> {
+pub fn ask(run: &RsmRun, frame: &RsmFrame) -> Result<Seen, EmbreeError> {
     let scene = RayScene::new(&frame.parts.blockers)?;
     let setting = run.setting(frame);
     let lights = frame.frame.rsm.lights();

@@ -9,7 +9,7 @@ use crate::replay::facts::{Facts, hash, runs};
 use crate::scene::Loaded;
 
 /// The facts of a scene with indirect light; hashes are over all frames.
-pub(super) fn of(loaded: &Loaded, run: &RsmRun<'_>, skip: bool) -> Facts {
+pub(super) fn of(loaded: &Loaded, run: &RsmRun, skip: bool) -> Facts {
     let [eye, map] = [run.setup.eye.size, run.setup.lamp.view.size];
     let [seen, blocking] = loaded.parts();
     let mut counts = vec![

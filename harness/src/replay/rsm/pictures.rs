@@ -8,10 +8,12 @@
 use super::embree::{Seen, rmse, values};
 use super::spec::RsmRun;
 use crate::picture::{self, Image};
+use crate::replay::pictures;
+use crate::replay::rows::Spot;
 use crate::report::Picture;
 
 /// The spec's pictures.
-pub(super) fn spec(run: &RsmRun<'_>) -> Vec<Picture> {
+pub(super) fn spec(run: &RsmRun) -> Vec<Picture> {
     let exposure = exposure(run);
     let mut pictures = Vec::new();
     for (number, frame) in (1..).zip(&run.frames) {
@@ -40,7 +42,7 @@ pub(super) fn spec(run: &RsmRun<'_>) -> Vec<Picture> {
 }
 
 /// Embree's pictures.
-pub(super) fn embree(run: &RsmRun<'_>, seen: &[Seen]) -> Vec<Picture> {
+pub(super) fn embree(run: &RsmRun, seen: &[Seen]) -> Vec<Picture> {
     let exposure = exposure(run);
     let mut pictures = Vec::new();
     for (number, (frame, seen)) in (1..).zip(run.frames.iter().zip(seen)) {
@@ -68,8 +70,41 @@ pub(super) fn embree(run: &RsmRun<'_>, seen: &[Seen]) -> Vec<Picture> {
     pictures
 }
 
+/// A GPU leg's pictures, end to end.
+pub(super) fn gpu(run: &RsmRun, label: &str, made: &[Vec<[f32; 3]>]) -> Vec<Picture> {
+    let exposure = exposure(run);
+    let mut shown = Vec::new();
+    for (number, (frame, made)) in (1..).zip(run.frames.iter().zip(made)) {
+        let wide: Vec<[f64; 3]> = made.iter().map(|pixel| pixel.map(f64::from)).collect();
+        let title = title_of(run, label, number);
+        let own = single(&values(&frame.frame.picture));
+        let difference = pictures::difference(&title, run.setup.eye.size, &own, made);
+        shown.push(Picture {
+            title,
+            caption: "What this leg makes of the scene, from its own points and places on.".into(),
+            image: exposed(run, &wide, exposure),
+        });
+        shown.extend(difference);
+    }
+    shown
+}
+
+/// Which pixels differ, and why, over the spec's picture of the first frame; `None` if none
+/// does.
+pub(super) fn causes(run: &RsmRun, spots: &[Spot]) -> Option<Picture> {
+    let frame = run.frames.first().filter(|_| !spots.is_empty())?;
+    let exposure = exposure(run);
+    let picture = toned(&values(&frame.frame.picture), exposure);
+    let marks = spots.iter().map(|spot| (spot.pixel, Some(spot.cause)));
+    Some(Picture {
+        title: "causes".into(),
+        caption: "Pixels that differ in any leg and frame, over the spec's picture.".into(),
+        image: picture::causes(run.setup.eye.size, Some(&single(&picture)), marks),
+    })
+}
+
 /// A title, with the frame's number where there are several.
-pub(super) fn title_of(run: &RsmRun<'_>, title: &str, number: usize) -> String {
+pub(super) fn title_of(run: &RsmRun, title: &str, number: usize) -> String {
     match run.frames.len() {
         1 => title.to_owned(),
         _ => format!("{title} frame {number}"),
@@ -80,7 +115,7 @@ pub(super) fn title_of(run: &RsmRun<'_>, title: &str, number: usize) -> String {
 const MIDDLE_GREY: f64 = 0.18;
 
 /// By what all pictures are multiplied.
-pub(super) fn exposure(run: &RsmRun<'_>) -> f64 {
+pub(super) fn exposure(run: &RsmRun) -> f64 {
     let (mut sum, mut lit) = (0.0, 0.0);
     for frame in &run.frames {
         for [r, g, b] in values(&run.unblocked(frame)) {
@@ -98,10 +133,9 @@ pub(super) fn exposure(run: &RsmRun<'_>) -> f64 {
 }
 
 /// A picture as all are shown.
-pub(super) fn exposed(run: &RsmRun<'_>, pixels: &[[f64; 3]], exposure: f64) -> Image {
-    let toned = |c: f64| c * exposure / (1.0 + c * exposure);
-    let toned: Vec<_> = pixels.iter().map(|pixel| pixel.map(toned)).collect();
-    let image = picture::linear(run.setup.eye.size, &single(&toned));
+pub(super) fn exposed(run: &RsmRun, pixels: &[[f64; 3]], exposure: f64) -> Image {
+    let toned = single(&toned(pixels, exposure));
+    let image = picture::linear(run.setup.eye.size, &toned);
     Image {
         note: format!(
             "{}; x = {exposure} times the linear colour, shown as x / (1 + x) in sRGB",
@@ -109,6 +143,11 @@ pub(super) fn exposed(run: &RsmRun<'_>, pixels: &[[f64; 3]], exposure: f64) -> I
         ),
         ..image
     }
+}
+
+fn toned(pixels: &[[f64; 3]], exposure: f64) -> Vec<[f64; 3]> {
+    let toned = |c: f64| c * exposure / (1.0 + c * exposure);
+    pixels.iter().map(|pixel| pixel.map(toned)).collect()
 }
 
 fn single(pixels: &[[f64; 3]]) -> Vec<[f32; 3]> {

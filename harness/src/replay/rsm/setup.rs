@@ -19,8 +19,7 @@ use crate::vector::{length, sub};
 const EDGE: u32 = 1 << 16;
 
 /// What all frames share.
-pub struct Setup<'a> {
-    loaded: &'a Loaded,
+pub struct Setup {
     /// World space and the lattice: around everything in all frames, and around perspective
     /// eyes, so that frames compare.
     pub lattice: Lattice,
@@ -44,12 +43,12 @@ pub struct Parts {
     pub grid: Grid,
 }
 
-impl<'a> Setup<'a> {
+impl Setup {
     /// Of a scene with an `[rsm]`.
     ///
     /// # Errors
     /// Coordinates that are not finite, and whatever exceeds a limit of the spec, in one line.
-    pub fn new(loaded: &'a Loaded) -> Result<Self, String> {
+    pub fn new(loaded: &Loaded) -> Result<Self, String> {
         let rsm = loaded.file.rsm.as_ref().ok_or("has no [rsm]")?.get_ref();
         let eye = loaded.world.camera;
         let light = rsm.lamp.get_ref().camera()?;
@@ -65,7 +64,6 @@ impl<'a> Setup<'a> {
         )]
         let strength = rsm.strength.0.map(|c| c as f32);
         let setup = Self {
-            loaded,
             eye: View::new(&eye, &lattice, loaded.scene.size).map_err(words)?,
             lamp: Lamp::new(lamp, strength, reference).map_err(words)?,
             parameters: parameters(rsm, &light, &lattice),
@@ -80,10 +78,10 @@ impl<'a> Setup<'a> {
     ///
     /// # Errors
     /// Whatever exceeds a limit of the spec, in one line.
-    pub fn parts(&self, frame: u32) -> Result<Parts, String> {
-        let points = points(self.loaded, frame);
-        let scene = &self.loaded.scene;
-        let entries = self.loaded.entries();
+    pub fn parts(&self, loaded: &Loaded, frame: u32) -> Result<Parts, String> {
+        let points = points(loaded, frame);
+        let scene = &loaded.scene;
+        let entries = loaded.entries();
         let of = |is: fn(&MeshEntry) -> bool| {
             let triangles = scene.triangles.iter();
             triangles.filter(move |t| is(entries[t.instance as usize]))

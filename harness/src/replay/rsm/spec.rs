@@ -9,7 +9,9 @@ use triptych_spec::rsm::{
 
 use super::setup::{Parts, Setup};
 use crate::plan::RsmPlan;
+use crate::replay::rows::Spot;
 use crate::replay::spec::timed;
+use crate::report::Picture;
 use crate::scene::Loaded;
 
 /// Most triangles that rays may be held against: pairs of a pixel of buffer B and a texel of
@@ -17,9 +19,9 @@ use crate::scene::Loaded;
 pub const WORK_MAX: u64 = 1 << 34;
 
 /// Everything that the spec says about a scene with indirect light.
-pub struct RsmRun<'a> {
+pub struct RsmRun {
     /// What all frames share.
-    pub setup: Setup<'a>,
+    pub setup: Setup,
     /// The frames.
     pub frames: Vec<RsmFrame>,
     /// Linear colour where nothing is seen.
@@ -59,18 +61,18 @@ pub struct Times {
     pub compose: Duration,
 }
 
-impl<'a> RsmRun<'a> {
+impl RsmRun {
     /// Runs all stages of all frames, but for those that the plan leaves out, which would
     /// give the same.
     ///
     /// # Errors
     /// One line for a scene beyond the limits of the spec.
-    pub fn new(loaded: &'a Loaded, skip: bool) -> Result<Self, String> {
+    pub fn new(loaded: &Loaded, skip: bool) -> Result<Self, String> {
         let plan = RsmPlan::new(loaded, skip);
         let setup = Setup::new(loaded)?;
         let background = loaded.scene.background;
         let frame = |number| {
-            let (parts, grid) = timed(|| setup.parts(number));
+            let (parts, grid) = timed(|| setup.parts(loaded, number));
             let parts = parts?;
             within(&setup, &parts)?;
             let setting = setting(&setup, &parts, background);
@@ -102,6 +104,11 @@ impl<'a> RsmRun<'a> {
         self.frames.iter().map(|frame| of(&frame.times)).sum()
     }
 
+    /// Which pixels differ, and why; `None` if none does.
+    pub fn causes(&self, spots: &[Spot]) -> Option<Picture> {
+        super::pictures::causes(self, spots)
+    }
+
     /// A frame's picture with its indirect light as if nothing were in its way.
     pub fn unblocked(&self, frame: &RsmFrame) -> Vec<Colour> {
         let dark = vec![DARK; frame.frame.coarse.size.pixels()];
@@ -127,7 +134,7 @@ pub(super) fn composed(
     compose(model, &frame.seen, light, coarse, parameters, *background)
 }
 
-fn setting<'s>(setup: &'s Setup<'_>, parts: &'s Parts, background: [f32; 3]) -> Setting<'s> {
+fn setting<'s>(setup: &'s Setup, parts: &'s Parts, background: [f32; 3]) -> Setting<'s> {
     Setting {
         model: &parts.model,
         eye: &setup.eye,
@@ -140,7 +147,7 @@ fn setting<'s>(setup: &'s Setup<'_>, parts: &'s Parts, background: [f32; 3]) -> 
 }
 
 /// Refuses rays that would take too long.
-fn within(setup: &Setup<'_>, parts: &Parts) -> Result<(), String> {
+fn within(setup: &Setup, parts: &Parts) -> Result<(), String> {
     let lists = parts.grid.offsets.windows(2).map(|w| w[1] - w[0]);
     let longest = u64::from(lists.max().unwrap_or(0));
     let side = u64::from(setup.parameters.side());
