@@ -26,6 +26,7 @@ pub mod machine;
 pub mod markdown;
 mod progress;
 mod reference;
+pub mod rsm;
 mod run;
 mod scene;
 mod spec;

@@ -9,9 +9,9 @@ use crate::replay::rsm::{Parts, Setup, reference};
 use crate::scene::Loaded;
 
 /// A scene's first frame.
-pub(super) struct Case<'a> {
+pub(super) struct Case {
     pub(super) name: String,
-    setup: Setup<'a>,
+    setup: Setup,
     pub(super) parts: Parts,
     background: [f32; 3],
     /// Snapped triangles of the eye's view, and of the lamp's.
@@ -22,14 +22,14 @@ pub(super) struct Case<'a> {
     pub(super) reference: Vec<[f64; 3]>,
 }
 
-impl<'a> Case<'a> {
+impl Case {
     /// Sets a scene up, and asks Embree for the reference.
     ///
     /// # Errors
     /// One line for a scene beyond the limits of the spec; what Embree reports.
-    pub(super) fn new(loaded: &'a Loaded) -> Result<Self, String> {
+    pub(super) fn new(loaded: &Loaded) -> Result<Self, String> {
         let setup = Setup::new(loaded)?;
-        let parts = setup.parts(0)?;
+        let parts = setup.parts(loaded, 0)?;
         let views = [&setup.eye, &setup.lamp.view];
         let drawn = views.map(|view| primitives(&view.scene(&parts.model), SUBPIXEL_BITS));
         let mut case = Self {
@@ -78,7 +78,7 @@ impl<'a> Case<'a> {
 }
 
 /// What the eye and the lamp see, and the direct light.
-fn base(setup: &Setup<'_>, parts: &Parts) -> Frame {
+fn base(setup: &Setup, parts: &Parts) -> Frame {
     let (model, lamp, parameters) = (&parts.model, &setup.lamp, &setup.parameters);
     let seen = gbuffer(model, &setup.eye, parameters);
     let rsm = rsm(model, lamp, parameters);
@@ -87,7 +87,14 @@ fn base(setup: &Setup<'_>, parts: &Parts) -> Frame {
     let coarse = Coarse::new(&seen, parameters);
     let dark = vec![DARK; coarse.size.pixels()];
     Frame {
-        all: gather(model, &seen, &places, &rsm.lights(), rsm.seen.size, parameters),
+        all: gather(
+            model,
+            &seen,
+            &places,
+            &rsm.lights(),
+            rsm.seen.size,
+            parameters,
+        ),
         blocked: Blocked {
             size: coarse.size,
             bits: Vec::new(),

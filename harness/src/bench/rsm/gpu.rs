@@ -7,6 +7,7 @@ use triptych_gpu::rsm::{Span, Timed, Work};
 use triptych_gpu::timer::Timer;
 use triptych_spec::grid::Membership;
 use triptych_spec::rsm::{Parameters, Setting};
+use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::super::legs::Station;
 use super::super::warm::wake;
@@ -22,7 +23,7 @@ use crate::calibrate::Grid;
 /// What the device refuses; what is not the spec's, in words.
 pub(super) fn measure(
     station: &Station<'_>,
-    case: &Case<'_>,
+    case: &Case,
     parameters: Parameters,
     runs: u32,
 ) -> Result<Row, String> {
@@ -31,10 +32,7 @@ pub(super) fn measure(
     let setting = case.setting(parameters);
     let work = Work {
         drawn: case.drawn.each_ref(),
-        path: match station.adapter.grid {
-            Grid::Unknown => Path::Compute,
-            _ => Path::Fragment,
-        },
+        path: path(station),
         cells: shape(station, &setting).map_err(words)?,
         setting,
     };
@@ -73,6 +71,16 @@ pub(super) fn measure(
         parts: named.zip(parts).collect(),
         ..row(case, parameters, error(&case.reference, &picture))
     })
+}
+
+/// The hardware's rasteriser, if it samples the spec's grid.
+fn path(station: &Station<'_>) -> Path {
+    let adapter = station.adapter;
+    let known = adapter.grid != Grid::Unknown;
+    match known && adapter.bits(Path::Fragment) == SUBPIXEL_BITS {
+        true => Path::Fragment,
+        false => Path::Compute,
+    }
 }
 
 /// A part's name in tables.

@@ -19,10 +19,20 @@ const SAMPLE: usize = 1 << 12;
 
 /// Refuses what is not the spec's, in words. `base` is what the spec sees.
 pub(super) fn check(setting: &Setting<'_>, base: &Frame, made: &Made) -> Result<(), String> {
-    let Setting { model, lamp, parameters, .. } = setting;
+    let Setting {
+        model,
+        lamp,
+        parameters,
+        ..
+    } = setting;
     agree(judge::surfaces(&base.seen, &made.seen))?;
     agree(judge::surfaces(&base.rsm.seen, &made.lights))?;
-    agree(judge::colours("intensities", &base.rsm.intensity, &made.intensities, |_| None))?;
+    agree(judge::colours(
+        "intensities",
+        &base.rsm.intensity,
+        &made.intensities,
+        |_| None,
+    ))?;
     if made.keys != base.rsm.seen.keys {
         return Err("keys of the map unlike the spec's".to_owned());
     }
@@ -31,27 +41,56 @@ pub(super) fn check(setting: &Setting<'_>, base: &Frame, made: &Made) -> Result<
         ..base.seen.clone()
     };
     let expected = place(&lamp.view, &own);
-    agree(judge::places(&lamp.view, &made.seen, &expected, &made.places))?;
+    agree(judge::places(
+        &lamp.view,
+        &made.seen,
+        &expected,
+        &made.places,
+    ))?;
     let expected = direct(model, &own, &made.places, lamp, &made.keys, parameters);
     agree(judge::lit(&expected.lit, &made.lit))?;
-    agree(judge::colours("direct light", &expected.light, &made.direct, |_| None))?;
+    agree(judge::colours(
+        "direct light",
+        &expected.light,
+        &made.direct,
+        |_| None,
+    ))?;
     sampled(setting, &own, made)?;
 
     let coarse = Coarse::new(&own, parameters);
     let expected = blur(model, &coarse, &exact(&made.blocked), parameters);
     if !setting.blockers.triangles.is_empty() {
-        agree(judge::colours("buffer B, averaged", &expected, &made.blurred, |_| None))?;
+        agree(judge::colours(
+            "buffer B, averaged",
+            &expected,
+            &made.blurred,
+            |_| None,
+        ))?;
     }
     let [direct, all] = [&made.direct, &made.all].map(|c| exact(c));
     let blurred = exact(&made.blurred);
     let light = [&direct[..], &all[..]];
-    let expected = compose(model, &own, light, (&coarse, &blurred), parameters, setting.background);
-    agree(judge::colours("picture", &expected, &made.picture, |_| None))
+    let expected = compose(
+        model,
+        &own,
+        light,
+        (&coarse, &blurred),
+        parameters,
+        setting.background,
+    );
+    agree(judge::colours("picture", &expected, &made.picture, |_| {
+        None
+    }))
 }
 
 /// Stages gather and block for some pixels that buffer B has.
 fn sampled(setting: &Setting<'_>, own: &Gbuffer, made: &Made) -> Result<(), String> {
-    let Setting { model, lamp, parameters, .. } = setting;
+    let Setting {
+        model,
+        lamp,
+        parameters,
+        ..
+    } = setting;
     let coarse = parameters.coarse(own.size);
     let every = coarse.pixels().div_ceil(SAMPLE);
     let cells: Vec<usize> = (0..coarse.pixels()).step_by(every).collect();
@@ -67,10 +106,16 @@ fn sampled(setting: &Setting<'_>, own: &Gbuffer, made: &Made) -> Result<(), Stri
         let (surface, intensity) = ((*surface)?, *intensity);
         Some(Light { surface, intensity })
     };
-    let lights: Vec<_> = made.lights.iter().zip(&made.intensities).map(light).collect();
+    let lights: Vec<_> = made
+        .lights
+        .iter()
+        .zip(&made.intensities)
+        .map(light)
+        .collect();
     let size = lamp.view.size;
     let all = gather(model, &some, &made.places, &lights, size, parameters);
-    let of = |colours: &[Colour]| -> Vec<Colour> { cells.iter().map(|c| colours[pixel(*c)]).collect() };
+    let of =
+        |colours: &[Colour]| -> Vec<Colour> { cells.iter().map(|c| colours[pixel(*c)]).collect() };
     let seen: Vec<[f32; 3]> = cells.iter().map(|c| made.all[pixel(*c)]).collect();
     agree(judge::colours("buffer A", &of(&all), &seen, |_| None))?;
     if setting.blockers.triangles.is_empty() {

@@ -114,7 +114,7 @@ fn paper() -> Result<Loaded, String> {
 }
 
 /// The spec's picture, drawn once, if that does not take too long.
-fn of_spec(case: &Case<'_>, parameters: Parameters) -> Option<Row> {
+fn of_spec(case: &Case, parameters: Parameters) -> Option<Row> {
     let eye = case.base.seen.size;
     let pixels = (eye.pixels() + parameters.coarse(eye).pixels()) as u64;
     if pixels * u64::from(parameters.side()).pow(2) > PAIRS_OF_SPEC {
@@ -131,7 +131,7 @@ fn of_spec(case: &Case<'_>, parameters: Parameters) -> Option<Row> {
 }
 
 /// A row of the spec without times.
-pub(super) fn row(case: &Case<'_>, parameters: Parameters, [rmse, largest]: [f64; 2]) -> Row {
+pub(super) fn row(case: &Case, parameters: Parameters, [rmse, largest]: [f64; 2]) -> Row {
     Row {
         scene: case.name.clone(),
         leg: "spec".to_owned(),
@@ -173,6 +173,9 @@ mod tests {
         let case = Case::new(&small).unwrap_or_else(|error| panic!("{error}"));
         let lit = case.base.direct.lit.iter().filter(|lit| **lit).count();
         let indirect = case.base.all.iter().filter(|c| c[0].value > 0.0).count();
-        assert!(lit > 32 && indirect > 256, "{lit} lit, {indirect} indirectly");
+        assert!(
+            lit > 32 && indirect > 256,
+            "{lit} lit, {indirect} indirectly"
+        );
     }
 }

@@ -23,12 +23,31 @@ const COLUMNS: [&str; 11] = [
 
 /// Columns of the file of values; times are in milliseconds, colours linear.
 const VALUES: [&str; 18] = [
-    "scene", "leg", "clock", "pixels", "blockers", "kernel", "stride", "divisor", "blur", "rays",
-    "runs", "part", "time_ms", "time_ms_min", "time_ms_max", "frame_ms", "rmse", "largest",
+    "scene",
+    "leg",
+    "clock",
+    "pixels",
+    "blockers",
+    "kernel",
+    "stride",
+    "divisor",
+    "blur",
+    "rays",
+    "runs",
+    "part",
+    "time_ms",
+    "time_ms_min",
+    "time_ms_max",
+    "frame_ms",
+    "rmse",
+    "largest",
 ];
 
 fn cells(row: &Row) -> [String; COLUMNS.len()] {
-    let parts = row.parts.iter().map(|(name, time)| format!("{name} {:.3}", time.median));
+    let parts = row
+        .parts
+        .iter()
+        .map(|(name, time)| format!("{name} {:.3}", time.median));
     let block = row.parts.iter().find(|(name, _)| *name == "B");
     [
         clean(&row.scene).into_owned(),
@@ -58,7 +77,9 @@ pub fn lines(frames: &Frames) -> Vec<String> {
     let widths: Vec<usize> = (0..COLUMNS.len()).map(|i| width(i).unwrap_or(0)).collect();
     let line = |row: &[String; COLUMNS.len()]| {
         let padded = row.iter().zip(&widths);
-        let padded: Vec<String> = padded.map(|(cell, width)| format!("{cell:width$}")).collect();
+        let padded: Vec<String> = padded
+            .map(|(cell, width)| format!("{cell:width$}"))
+            .collect();
         padded.join("  ")
     };
     table.iter().map(line).collect()

@@ -60,6 +60,20 @@ pub fn ask(run: &RsmRun, frame: &RsmFrame) -> Result<Seen, EmbreeError> {
     })
 }
 
+/// The picture without noise of a frame that is drawn up to its direct light.
+///
+/// # Errors
+/// The first error that Embree reports.
+pub fn reference(setting: &Setting<'_>, frame: &Frame) -> Result<Vec<[f64; 3]>, EmbreeError> {
+    let asked = Asked {
+        setting,
+        frame,
+        lights: &frame.rsm.lights(),
+        scene: &RayScene::new(setting.blockers)?,
+    };
+    asked.reference()
+}
+
 struct Asked<'a, E> {
     setting: &'a Setting<'a>,
     frame: &'a Frame,
@@ -152,7 +166,7 @@ fn exact(value: f64) -> Bounded {
 }
 
 /// Colours without their bounds.
-pub(super) fn values(colours: &[Colour]) -> Vec<[f64; 3]> {
+pub fn values(colours: &[Colour]) -> Vec<[f64; 3]> {
     let value = |colour: &Colour| colour.map(|channel| channel.value);
     colours.iter().map(value).collect()
 }
