@@ -32,11 +32,13 @@ fn words_of(brick: u32) -> vec2<u32> {
     var words = vec2(0u);
     for (var z = first.z; z < end.z; z += 1u) {
         for (var y = first.y; y < end.y; y += 1u) {
+            let row = number(vec3(first.x, y, z)) - first.x;
+            var start = offsets[row + first.x];
             for (var x = first.x; x < end.x; x += 1u) {
-                let cell = number(vec3(x, y, z));
+                let next = offsets[row + x + 1u];
                 let bit = bit_of(vec3(x, y, z));
-                let full = u32(offsets[cell] < offsets[cell + 1u]);
-                words[bit / 32u] |= full << (bit % 32u);
+                words[bit / 32u] |= u32(start < next) << (bit % 32u);
+                start = next;
             }
         }
     }
