@@ -2,7 +2,13 @@
 // crossed in one step.
 
 // Two words a brick; x fastest, in a brick and among them.
-@group(0) @binding(14) var<storage, read_write> bricks: array<u32>;
+@group(0) @binding(14) var<storage, read_write> bricks: array<vec2<u32>>;
+
+// The brick that a ray is in, so that it is read once.
+struct Brick {
+    number: u32,
+    words: vec2<u32>,
+}
 
 fn brick_counts() -> vec3<u32> {
     return (vec3(cells.x, cells.y, cells.z) + 3u) / 4u;
@@ -19,9 +25,22 @@ fn bit_of(cell: vec3<u32>) -> u32 {
     return at.x + 4u * at.y + 16u * at.z;
 }
 
-fn brick_is_empty(cell: vec3<i32>) -> bool {
-    let brick = 2u * brick_of(vec3<u32>(cell));
-    return (bricks[brick] | bricks[brick + 1u]) == 0u;
+// The brick of a cell, given the one that was read last.
+fn brick_at(cell: vec3<i32>, last: Brick) -> Brick {
+    let number = brick_of(vec3<u32>(cell));
+    if number == last.number {
+        return last;
+    }
+    return Brick(number, bricks[number]);
+}
+
+fn is_empty(brick: Brick) -> bool {
+    return (brick.words.x | brick.words.y) == 0u;
+}
+
+fn is_listed(brick: Brick, cell: vec3<i32>) -> bool {
+    let bit = bit_of(vec3<u32>(cell));
+    return ((select(brick.words.x, brick.words.y, bit >= 32u) >> (bit % 32u)) & 1u) == 1u;
 }
 
 // The bits of a brick.

@@ -282,9 +282,7 @@ fn trace_bricks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     if brick >= cells.items {
         return;
     }
-    let words = words_of(brick);
-    bricks[2u * brick] = words.x;
-    bricks[2u * brick + 1u] = words.y;
+    bricks[brick] = words_of(brick);
 }
 
 // What a ray meets.

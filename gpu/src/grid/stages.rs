@@ -186,11 +186,12 @@ impl<'g> Stages<'g> {
         Ok(hits)
     }
 
-    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry.
+    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry;
+    /// where a dispatch ends, a cell may be looked at again.
     fn rounds(&self) -> u64 {
         let cells = u64::from(self.device.cells.x + self.device.cells.y + self.device.cells.z);
         let entries = self.prims.size() / 4;
-        (cells + entries).div_ceil(u64::from(STEPS)) + 1
+        (cells + entries).div_ceil(u64::from(STEPS - 1)) + 1
     }
 
     fn trace_part(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
