@@ -66,15 +66,14 @@ fn words_of(brick: u32) -> vec2<u32> {
 
 // The last cell of the brick on each axis, in the direction of the ray.
 fn last_of_brick(cell: vec3<i32>, up: vec3<i32>) -> vec3<i32> {
-    let first = cell / 4 * 4;
+    let first = cell & vec3(-4);
     let end = min(first + 3, vec3<i32>(vec3(cells.x, cells.y, cells.z)) - 1);
     return select(first, end, up == vec3(1));
 }
 
-// The neighbour of an empty brick that the ray enters next.
-fn past_brick(way: Way, cell: vec3<i32>) -> vec3<i32> {
-    let last = last_of_brick(cell, way.up);
-    let exit = exits(way, last);
+// The neighbour of an empty brick that the ray enters next, given its last cell and when that is
+// left.
+fn past_brick(way: Way, cell: vec3<i32>, last: vec3<i32>, exit: vec3<f32>) -> vec3<i32> {
     let time = soonest(exit);
     let start = starts();
     let x = settled(cell.x, last.x, start.x, way.step.x, way.up.x, way.origin.x, way.inverse.x, time);

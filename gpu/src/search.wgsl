@@ -76,10 +76,12 @@ fn traced(ray: Ray, given: Hit) -> Hit {
             }
             seen = brick_at(march.cell, seen);
             if is_empty(seen) {
-                if ends(ray, hit, soonest(exits(way, last_of_brick(march.cell, way.up)))) {
+                let last = last_of_brick(march.cell, way.up);
+                let exit = exits(way, last);
+                if ends(ray, hit, soonest(exit)) {
                     return hit;
                 }
-                march.cell = past_brick(way, march.cell);
+                march.cell = past_brick(way, march.cell, last, exit);
                 if !inside(march.cell) {
                     return hit;
                 }
@@ -93,14 +95,21 @@ fn traced(ray: Ray, given: Hit) -> Hit {
                 end = 0u;
             }
         }
+        if hit.at >= end {
+            break;
+        }
         var meeting = Meeting(MISSED, 0.0);
+        var prim = 0u;
+        // Read while the one before is looked at.
+        var ahead = prims[min(hit.at, end - 1u)];
         while hit.at < end && steps < STEPS && meeting.verdict == MISSED {
             steps += 1u;
-            meeting = glance(ray, prims[hit.at]);
             hit.at += 1u;
+            prim = ahead;
+            ahead = prims[min(hit.at, end - 1u)];
+            meeting = glance(ray, prim);
         }
         if meeting.verdict != MISSED {
-            let prim = prims[hit.at - 1u];
             if meeting.verdict == OPEN {
                 meeting = meets(ray, prim);
             }
