@@ -28,7 +28,6 @@ struct Entry {
 // Entries of each tile of cells, then of all tiles before.
 @group(0) @binding(13) var<storage, read_write> sums: array<u32>;
 
-
 // Cells of an invocation, and of a workgroup, in a scan.
 const SCANNED: u32 = 16u;
 const TILE: u32 = 1024u;
@@ -195,7 +194,26 @@ fn fill_sort(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     }
 }
 
-// Long lists: two runs in order become one; one entry.
+// Long lists: runs of SHORT in order; one entry, whose rank is its place.
+@compute @workgroup_size(64)
+fn fill_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let entry = item(id, groups);
+    if entry >= cells.items {
+        return;
+    }
+    let cell = cell_of(entry);
+    let start = offsets[cell];
+    let end = offsets[cell + 1u];
+    let prim = prims[entry];
+    if end - start <= SHORT {
+        merged[entry] = prim;
+        return;
+    }
+    let own = start + (entry - start) / SHORT * SHORT;
+    merged[own + rank(prim, own, min(own + SHORT, end))] = prim;
+}
+
+// The same: two runs in order become one; one entry.
 @compute @workgroup_size(64)
 fn fill_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = item(id, groups);
@@ -264,9 +282,7 @@ fn trace_bricks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     if brick >= cells.items {
         return;
     }
-    let words = words_of(brick);
-    bricks[2u * brick] = words.x;
-    bricks[2u * brick + 1u] = words.y;
+    bricks[brick] = words_of(brick);
 }
 
 // What a ray meets.

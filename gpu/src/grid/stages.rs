@@ -130,22 +130,16 @@ impl<'g> Stages<'g> {
         if longest <= SHORT {
             return Ok(());
         }
-        let mut merged = self
-            .device
-            .gpu
-            .storage("entries of cells", 4 * u64::from(entries))?;
-        let mut run = 1;
-        while run < longest {
+        let size = 4 * u64::from(entries);
+        let mut merged = self.device.gpu.storage("entries of cells", size)?;
+        for (kernel, run) in long_passes(longest) {
             let buffers = [
                 ("offsets", &self.offsets),
                 ("prims", &self.prims),
                 ("merged", &merged),
             ];
-            self.time += self
-                .device
-                .each("fill_merge", runs(entries, run), &buffers)?;
+            self.time += self.device.each(kernel, runs(entries, run), &buffers)?;
             std::mem::swap(&mut self.prims, &mut merged);
-            run *= 2;
         }
         Ok(())
     }
@@ -197,11 +191,12 @@ impl<'g> Stages<'g> {
         self.device.each("trace_bricks", bricks, &buffers)
     }
 
-    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry.
+    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry;
+    /// where a dispatch ends, a cell may be looked at again.
     fn rounds(&self) -> u64 {
         let cells = u64::from(self.device.cells.x + self.device.cells.y + self.device.cells.z);
         let entries = self.prims.size() / 4;
-        (cells + entries).div_ceil(u64::from(STEPS)) + 1
+        (cells + entries).div_ceil(u64::from(STEPS - 1)) + 1
     }
 
     fn trace_part(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
@@ -258,6 +253,15 @@ impl<'g> Stages<'g> {
             stage: "trace",
         }
     }
+}
+
+/// Kernels that put lists longer than [`SHORT`] in order, and the runs that each starts from.
+pub(super) fn long_passes(longest: u32) -> impl Iterator<Item = (&'static str, u32)> {
+    let merges = std::iter::successors(Some(SHORT), |run| run.checked_mul(2));
+    let merges = merges.take_while(move |run| *run < longest);
+    let runs = (longest > SHORT).then_some(("fill_runs", 0));
+    runs.into_iter()
+        .chain(merges.map(|run| ("fill_merge", run)))
 }
 
 /// A ray that has not started.

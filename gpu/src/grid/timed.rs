@@ -9,8 +9,8 @@ use triptych_spec::grid::trace::Query;
 use triptych_spec::grid::{Blockers, Membership};
 
 use super::device::Device;
-use super::stages::fresh;
-use super::{Cells, Hit, Packed, SHORT, TILE};
+use super::stages::{fresh, long_passes};
+use super::{Cells, Hit, Packed, TILE};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -231,15 +231,14 @@ fn build(
     passes.push(device.ready_groups("scan", of_cells, tiles, named)?);
     sweep(["fill", "fill_chunks"], &mut passes)?;
     passes.push(device.ready("fill_sort", of_cells, named)?);
-    let mut run = 1;
     let mut swapped: Vec<(&str, &wgpu::Buffer)> = named.to_vec();
-    while shape.longest > SHORT && run < shape.longest {
+    for (kernel, run) in long_passes(shape.longest) {
         let cells = Cells {
             items: shape.entries,
             run,
             ..cells
         };
-        passes.push(device.ready("fill_merge", cells, &swapped)?);
+        passes.push(device.ready(kernel, cells, &swapped)?);
         for (name, _) in &mut swapped {
             *name = match *name {
                 "prims" => "merged",
@@ -247,7 +246,6 @@ fn build(
                 other => other,
             };
         }
-        run *= 2;
     }
     let bricks = Cells {
         items: device.bricks(),

@@ -114,13 +114,19 @@ pub const STAGES: [Stage; 21] = [
     Stage {
         name: "fill",
         file: "grid",
-        compute: &["fill", "fill_chunks", "fill_sort", "fill_merge"],
+        compute: &[
+            "fill",
+            "fill_chunks",
+            "fill_sort",
+            "fill_runs",
+            "fill_merge",
+        ],
         fragment: &[],
         contract: "First and second pass, as for count: triangle i into the run of every cell \
             that lists it, unless its address is beyond cells.capacity; counts may be used up. \
-            Third: the list of cell i in order, or its length in unfinished if it exceeds 64. Fourth, for each power \
-            of two from 1 in cells.run: entry i of a longer list to merged, where two runs in \
-            order become one.",
+            Third: the list of cell i in order, or its length in unfinished if it exceeds 64. If \
+            any does, entry i of a longer list to merged. Fourth: each run of 64 entries is in \
+            order there. Fifth, for cells.run of 64, 128, and so on: two such runs become one.",
     },
     Stage {
         name: "link",
