@@ -150,30 +150,61 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     all_light[pixel] = sum;
 }
 
-// One pair of a pixel of buffer B and a texel of its kernel: a ray, if the texel would light it.
-@compute @workgroup_size(64)
-fn block_rays(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let at = item(id, groups);
-    if at >= parameters.items {
-        return;
-    }
-    let pair = parameters.first + at;
+// Rays of a workgroup, and the place of the first: one addition to `asked` for all of them, which
+// would otherwise be what the pass waits for.
+var<workgroup> claimed: atomic<u32>;
+var<workgroup> first_place: u32;
+
+// The ray of a pair of a pixel of buffer B and a texel of its kernel.
+struct Asked {
+    ray: Ray,
+    // Whether the texel would light the pixel.
+    counts: bool,
+}
+
+fn asked_by(pair: u32) -> Asked {
+    let none = Asked(Ray(vec3(0.0), 1u, vec3(0.0), pair), false);
     let kernel = side() * side();
     let cell = pair / kernel;
     let pixel = fine(cell % parameters.coarse_width, cell / parameters.coarse_width);
     let surface = seen[pixel];
     let place = places[pixel];
     if surface.face == NOTHING || place.known == 0u {
-        return;
+        return none;
     }
     let number = pair % kernel;
     let texel = texel_at(place, number % side(), number / side());
     if texel == NOTHING || !term(surface, towards_viewer(surface.face), texel).counts {
-        return;
+        return none;
     }
-    let address = atomicAdd(&asked, 1u);
-    rays[address] = Ray(surface.point, 1u, lights[texel].point - surface.point, pair);
-    hits[address] = Hit(NOTHING, 0.0, FRESH, 0u);
+    return Asked(Ray(surface.point, 1u, lights[texel].point - surface.point, pair), true);
+}
+
+// One pair: a ray, if the texel would light the pixel.
+@compute @workgroup_size(64)
+fn block_rays(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let at = item(id, groups);
+    var asking = Asked(Ray(vec3(0.0), 1u, vec3(0.0), 0u), false);
+    if at < parameters.items {
+        asking = asked_by(parameters.first + at);
+    }
+    var own = 0u;
+    if asking.counts {
+        own = atomicAdd(&claimed, 1u);
+    }
+    workgroupBarrier();
+    if lane == 0u {
+        first_place = atomicAdd(&asked, atomicLoad(&claimed));
+    }
+    workgroupBarrier();
+    if asking.counts {
+        rays[first_place + own] = asking.ray;
+        hits[first_place + own] = Hit(NOTHING, 0.0, FRESH, 0u);
+    }
 }
 
 // One ray.
@@ -205,9 +236,13 @@ fn block_sum(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     }
     if surface.face != NOTHING && place.known == 1u {
         let unit = towards_viewer(surface.face);
-        let end = (parameters.first + parameters.rows) * side();
-        for (var number = parameters.first * side(); number < end; number += 1u) {
-            if is_blocked(cell, number) {
+        let begin = parameters.first * side();
+        let end = begin + parameters.rows * side();
+        for (var at = begin / 32u; at * 32u < end; at += 1u) {
+            var word = blocked_word(cell, at, begin, end);
+            while word != 0u {
+                let number = at * 32u + firstTrailingBit(word);
+                word &= word - 1u;
                 let texel = texel_at(place, number % side(), number / side());
                 sum += term(surface, unit, texel).factor * intensities[texel];
             }
@@ -216,9 +251,16 @@ fn block_sum(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     blocked[cell] = sum;
 }
 
-fn is_blocked(cell: u32, number: u32) -> bool {
-    let word = atomicLoad(&bits[cell * words() + number / 32u]);
-    return ((word >> (number % 32u)) & 1u) == 1u;
+// Which of the 32 texels of a word are blocked, of those from `begin` to `end`.
+fn blocked_word(cell: u32, at: u32, begin: u32, end: u32) -> u32 {
+    var word = atomicLoad(&bits[cell * words() + at]);
+    if at * 32u < begin {
+        word &= 0xffffffffu << (begin - at * 32u);
+    }
+    if end - at * 32u < 32u {
+        word &= (1u << (end - at * 32u)) - 1u;
+    }
+    return word;
 }
 
 // One pixel of buffer B.

@@ -2,6 +2,7 @@
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::grid::{self, Shape};
+use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
 use triptych_gpu::rsm::{Span, Timed, Work};
 use triptych_gpu::timer::Timer;
@@ -36,7 +37,9 @@ pub(super) fn measure(
         cells: shape(station, &setting).map_err(words)?,
         setting,
     };
-    let timed = Timed::new(gpu, &station.kernels, &work).map_err(words)?;
+    let native = gpu.has_int64();
+    let kernels = Kernels::trusted(native, |sources| sources);
+    let timed = Timed::new(gpu, &kernels, &work).map_err(words)?;
     let spans: Vec<Span> = timed.spans().collect();
     let whole = Timer::new(gpu, &station.clock, 1).map_err(words)?;
     let count = u32::try_from(spans.len()).expect("few");
@@ -64,7 +67,7 @@ pub(super) fn measure(
     let named = spans.iter().map(|span| name(*span));
     let parts = parts.into_iter().map(Spread::of);
     Ok(Row {
-        leg: format!("gpu@{}", gpu.name),
+        leg: format!("gpu@{}{}", gpu.name, if native { ", native" } else { "" }),
         clock: station.clock_name(),
         rays: timed.rays.into(),
         frame: Spread::of(frames),

@@ -108,7 +108,7 @@ pub fn page(frames: &Frames) -> String {
 fn how(runs: u32) -> String {
     format!(
         "Medians of {runs} rounds after {WARM_UP} to warm up, with minimum and maximum; the spec draws \
-         each picture once, on one core.\n*Frame*: from snapped triangles and the blockers' corners \
+         each picture once, on one core,\nand large ones not at all, of which software drivers draw one.\n*Frame*: from snapped triangles and the blockers' corners \
          to the picture, in one submission, without transfers and\ncompilation. *Parts* are timed \
          by themselves: *eye* and *map* (coverage, points, lights), *cells* (the blockers' grid, \
          built\nanew), *direct* (places, shadow map), *A* (all texels of the kernel), *B* (rays, \
