@@ -2,7 +2,13 @@
 // crossed in one step.
 
 // Two words a brick; x fastest, in a brick and among them.
-@group(0) @binding(14) var<storage, read_write> bricks: array<u32>;
+@group(0) @binding(14) var<storage, read_write> bricks: array<vec2<u32>>;
+
+// The brick that a ray is in, so that it is read once.
+struct Brick {
+    number: u32,
+    words: vec2<u32>,
+}
 
 fn brick_counts() -> vec3<u32> {
     return (vec3(cells.x, cells.y, cells.z) + 3u) / 4u;
@@ -19,9 +25,22 @@ fn bit_of(cell: vec3<u32>) -> u32 {
     return at.x + 4u * at.y + 16u * at.z;
 }
 
-fn brick_is_empty(cell: vec3<i32>) -> bool {
-    let brick = 2u * brick_of(vec3<u32>(cell));
-    return (bricks[brick] | bricks[brick + 1u]) == 0u;
+// The brick of a cell, given the one that was read last.
+fn brick_at(cell: vec3<i32>, last: Brick) -> Brick {
+    let number = brick_of(vec3<u32>(cell));
+    if number == last.number {
+        return last;
+    }
+    return Brick(number, bricks[number]);
+}
+
+fn is_empty(brick: Brick) -> bool {
+    return (brick.words.x | brick.words.y) == 0u;
+}
+
+fn is_listed(brick: Brick, cell: vec3<i32>) -> bool {
+    let bit = bit_of(vec3<u32>(cell));
+    return ((select(brick.words.x, brick.words.y, bit >= 32u) >> (bit % 32u)) & 1u) == 1u;
 }
 
 // The bits of a brick.
@@ -32,11 +51,13 @@ fn words_of(brick: u32) -> vec2<u32> {
     var words = vec2(0u);
     for (var z = first.z; z < end.z; z += 1u) {
         for (var y = first.y; y < end.y; y += 1u) {
+            let row = number(vec3(first.x, y, z)) - first.x;
+            var start = offsets[row + first.x];
             for (var x = first.x; x < end.x; x += 1u) {
-                let cell = number(vec3(x, y, z));
+                let next = offsets[row + x + 1u];
                 let bit = bit_of(vec3(x, y, z));
-                let full = u32(offsets[cell] < offsets[cell + 1u]);
-                words[bit / 32u] |= full << (bit % 32u);
+                words[bit / 32u] |= u32(start < next) << (bit % 32u);
+                start = next;
             }
         }
     }
@@ -45,15 +66,14 @@ fn words_of(brick: u32) -> vec2<u32> {
 
 // The last cell of the brick on each axis, in the direction of the ray.
 fn last_of_brick(cell: vec3<i32>, up: vec3<i32>) -> vec3<i32> {
-    let first = cell / 4 * 4;
+    let first = cell & vec3(-4);
     let end = min(first + 3, vec3<i32>(vec3(cells.x, cells.y, cells.z)) - 1);
     return select(first, end, up == vec3(1));
 }
 
-// The neighbour of an empty brick that the ray enters next.
-fn past_brick(way: Way, cell: vec3<i32>) -> vec3<i32> {
-    let last = last_of_brick(cell, way.up);
-    let exit = exits(way, last);
+// The neighbour of an empty brick that the ray enters next, given its last cell and when that is
+// left.
+fn past_brick(way: Way, cell: vec3<i32>, last: vec3<i32>, exit: vec3<f32>) -> vec3<i32> {
     let time = soonest(exit);
     let start = starts();
     let x = settled(cell.x, last.x, start.x, way.step.x, way.up.x, way.origin.x, way.inverse.x, time);

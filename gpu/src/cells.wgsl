@@ -8,10 +8,10 @@ struct Cells {
     z: u32,
     // Whether cells that a triangle's box touches, but the triangle does not, drop it.
     overlap: u32,
-    // Triangles, cells, bricks, entries or rays of this dispatch.
+    // Triangles, chunks, cells, bricks, entries or rays of this dispatch.
     items: u32,
-    // First cell of each triangle's box in this dispatch.
-    first: u32,
+    // Chunks of large boxes that there is room for.
+    chunks: u32,
     // Entries that there is room for.
     capacity: u32,
     // Entries that are in order already, in a row.
@@ -36,7 +36,7 @@ const WIDENED: f32 = 8.0;
 // iterations, GPUs reset after seconds.
 const STEPS: u32 = 16384u;
 
-// Set by what needs another dispatch.
+// Set by what needs another dispatch, to how large that is where it matters.
 @group(0) @binding(3) var<storage, read_write> unfinished: atomic<u32>;
 
 // Where each axis' boundaries start.
@@ -89,44 +89,4 @@ fn touched(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Touched {
     let y = touched_on(start.y, cells.y, low.y, high.y);
     let z = touched_on(start.z, cells.z, low.z, high.z);
     return Touched(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y));
-}
-
-// A way through the touched cells, x fastest.
-struct Sweep {
-    touched: Touched,
-    at: vec3<u32>,
-    left: u32,
-}
-
-// From the dispatch's first cell on, for as many as one dispatch looks at.
-fn sweep(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Sweep {
-    let touched = touched(a, b, c);
-    let size = touched.size;
-    let total = size.x * size.y * size.z;
-    let first = min(cells.first, total);
-    let left = min(total - first, STEPS);
-    if total - first > STEPS {
-        atomicOr(&unfinished, 1u);
-    }
-    let at = vec3(first % size.x, first / size.x % size.y, first / (size.x * size.y));
-    return Sweep(touched, at, left);
-}
-
-fn here(sweep: Sweep) -> vec3<u32> {
-    return sweep.touched.first + sweep.at;
-}
-
-fn onward(given: Sweep) -> Sweep {
-    var sweep = given;
-    sweep.left -= 1u;
-    sweep.at.x += 1u;
-    if sweep.at.x == sweep.touched.size.x {
-        sweep.at.x = 0u;
-        sweep.at.y += 1u;
-    }
-    if sweep.at.y == sweep.touched.size.y {
-        sweep.at.y = 0u;
-        sweep.at.z += 1u;
-    }
-    return sweep;
 }

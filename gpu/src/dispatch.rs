@@ -15,6 +15,8 @@ pub(crate) struct Ready {
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     groups: u32,
+    /// What is set to zero before.
+    cleared: Option<wgpu::Buffer>,
 }
 
 impl Ready {
@@ -34,12 +36,24 @@ impl Ready {
             group: kernel.bind(gpu, buffers),
             pipeline: pipeline.clone(),
             groups,
+            cleared: None,
         })
+    }
+
+    /// The same after a buffer has been set to zero.
+    pub(crate) fn after_clearing(self, buffer: wgpu::Buffer) -> Self {
+        Self {
+            cleared: Some(buffer),
+            ..self
+        }
     }
 
     /// Records a pass of its own: what it writes is there for the next. Workgroups beyond what
     /// a row holds go to further rows, and may be more than were asked for.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, writes: Option<Writes<'_>>) {
+        if let Some(buffer) = &self.cleared {
+            encoder.clear_buffer(buffer, 0, None);
+        }
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
             timestamp_writes: writes.map(Writes::compute),

@@ -13,6 +13,7 @@ use triptych_spec::grid::ray::Ray;
 
 pub use device::Device;
 pub use stages::Stages;
+pub(crate) use timed::Room;
 pub use timed::{Shape, Span, Timed};
 
 /// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.
@@ -20,6 +21,13 @@ pub const TILE: u32 = 1024;
 
 /// Lists up to so long are sorted by one invocation each. Twin: `SHORT` in `grid.wgsl`.
 pub const SHORT: u32 = 64;
+
+/// Boxes of up to so many cells are gone through by one invocation. Twin: `SMALL` in
+/// `sweep.wgsl`.
+pub const SMALL: u32 = 64;
+
+/// Cells of a larger box that a workgroup goes through. Twin: `CHUNK` in `sweep.wgsl`.
+pub const CHUNK: u32 = 1024;
 
 /// What an invocation does at most within a dispatch. Twin: `STEPS` in `cells.wgsl`.
 pub const STEPS: u32 = 16_384;
@@ -41,10 +49,10 @@ pub struct Cells {
     pub z: u32,
     /// 1: cells that a triangle does not touch, though its box does, drop it.
     pub overlap: u32,
-    /// Triangles, cells, bricks, entries or rays of a dispatch.
+    /// Triangles, chunks, cells, bricks, entries or rays of a dispatch.
     pub items: u32,
-    /// First cell of each triangle's box in a dispatch.
-    pub first: u32,
+    /// Chunks of large boxes that there is room for.
+    pub chunks: u32,
     /// Entries that there is room for.
     pub capacity: u32,
     /// Entries that are in order already, in a row.

@@ -3,11 +3,10 @@
 //
 // A list is built in passes of its own and read in later ones; within a pass, invocations
 // meet in atomics only.
-//#import cells
+//#import sweep
 //#import counter
 //#import runs
 //#import scan
-//#import overlap
 //#import search
 
 // Triangles that each cell lists; `fill` counts them down again.
@@ -29,7 +28,6 @@ struct Entry {
 // Entries of each tile of cells, then of all tiles before.
 @group(0) @binding(13) var<storage, read_write> sums: array<u32>;
 
-
 // Cells of an invocation, and of a workgroup, in a scan.
 const SCANNED: u32 = 16u;
 const TILE: u32 = 1024u;
@@ -42,23 +40,42 @@ fn item(id: vec3<u32>, groups: vec3<u32>) -> u32 {
     return id.x + id.y * groups.x * WORKGROUP;
 }
 
-fn lists(cell: vec3<u32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
-    return cells.overlap == 0u || overlaps(cell, a, b, c);
+// The same of a workgroup.
+fn chunk_of(group: vec3<u32>, groups: vec3<u32>) -> u32 {
+    return group.x + group.y * groups.x;
 }
 
+fn count_cell(way: Sweep) {
+    if lists(way) {
+        atomicAdd(&counts[number(here(way))], 1u);
+    }
+}
+
+// One triangle.
 @compute @workgroup_size(64)
 fn count(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let triangle = item(id, groups);
     if triangle >= cells.items {
         return;
     }
-    let a = corner(triangle, 0u);
-    let b = corner(triangle, 1u);
-    let c = corner(triangle, 2u);
-    for (var way = sweep(a, b, c); way.left > 0u; way = onward(way)) {
-        if lists(here(way), a, b, c) {
-            atomicAdd(&counts[number(here(way))], 1u);
-        }
+    for (var way = sweep(triangle); way.left > 0u; way = onward(way)) {
+        count_cell(way);
+    }
+}
+
+// One chunk of a large box.
+@compute @workgroup_size(64)
+fn count_chunks(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunk_of(group, groups);
+    if chunk >= cells.items {
+        return;
+    }
+    for (var way = share(chunks[chunk], lane); way.left > 0u; way = onward(way)) {
+        count_cell(way);
     }
 }
 
@@ -114,23 +131,42 @@ fn scan(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
 }
 
+// Whoever comes first gets the first place: as ids mostly come in order, lists then nearly are.
+fn fill_cell(way: Sweep) {
+    let cell = number(here(way));
+    if lists(way) {
+        let address = offsets[cell + 1u] - atomicSub(&counts[cell], 1u);
+        if address < cells.capacity {
+            prims[address] = way.triangle;
+        }
+    }
+}
+
+// One triangle.
 @compute @workgroup_size(64)
 fn fill(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let triangle = item(id, groups);
     if triangle >= cells.items {
         return;
     }
-    let a = corner(triangle, 0u);
-    let b = corner(triangle, 1u);
-    let c = corner(triangle, 2u);
-    for (var way = sweep(a, b, c); way.left > 0u; way = onward(way)) {
-        let cell = number(here(way));
-        if lists(here(way), a, b, c) {
-            let address = offsets[cell] + atomicSub(&counts[cell], 1u) - 1u;
-            if address < cells.capacity {
-                prims[address] = triangle;
-            }
-        }
+    for (var way = sweep(triangle); way.left > 0u; way = onward(way)) {
+        fill_cell(way);
+    }
+}
+
+// One chunk of a large box.
+@compute @workgroup_size(64)
+fn fill_chunks(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunk_of(group, groups);
+    if chunk >= cells.items {
+        return;
+    }
+    for (var way = share(chunks[chunk], lane); way.left > 0u; way = onward(way)) {
+        fill_cell(way);
     }
 }
 
@@ -158,7 +194,26 @@ fn fill_sort(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     }
 }
 
-// Long lists: two runs in order become one; one entry.
+// Long lists: runs of SHORT in order; one entry, whose rank is its place.
+@compute @workgroup_size(64)
+fn fill_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let entry = item(id, groups);
+    if entry >= cells.items {
+        return;
+    }
+    let cell = cell_of(entry);
+    let start = offsets[cell];
+    let end = offsets[cell + 1u];
+    let prim = prims[entry];
+    if end - start <= SHORT {
+        merged[entry] = prim;
+        return;
+    }
+    let own = start + (entry - start) / SHORT * SHORT;
+    merged[own + rank(prim, own, min(own + SHORT, end))] = prim;
+}
+
+// The same: two runs in order become one; one entry.
 @compute @workgroup_size(64)
 fn fill_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = item(id, groups);
@@ -182,23 +237,41 @@ fn fill_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
 }
 
 // The paper's lists, in whatever order invocations come.
+fn link_cell(way: Sweep) {
+    if lists(way) {
+        let address = claim();
+        if address < cells.capacity {
+            let next = atomicExchange(&heads[number(here(way))], address);
+            entries[address] = Entry(way.triangle, next);
+        }
+    }
+}
+
+// One triangle.
 @compute @workgroup_size(64)
 fn link(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let triangle = item(id, groups);
     if triangle >= cells.items {
         return;
     }
-    let a = corner(triangle, 0u);
-    let b = corner(triangle, 1u);
-    let c = corner(triangle, 2u);
-    for (var way = sweep(a, b, c); way.left > 0u; way = onward(way)) {
-        if lists(here(way), a, b, c) {
-            let address = claim();
-            if address < cells.capacity {
-                let next = atomicExchange(&heads[number(here(way))], address);
-                entries[address] = Entry(triangle, next);
-            }
-        }
+    for (var way = sweep(triangle); way.left > 0u; way = onward(way)) {
+        link_cell(way);
+    }
+}
+
+// One chunk of a large box.
+@compute @workgroup_size(64)
+fn link_chunks(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let chunk = chunk_of(group, groups);
+    if chunk >= cells.items {
+        return;
+    }
+    for (var way = share(chunks[chunk], lane); way.left > 0u; way = onward(way)) {
+        link_cell(way);
     }
 }
 
@@ -209,9 +282,7 @@ fn trace_bricks(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     if brick >= cells.items {
         return;
     }
-    let words = words_of(brick);
-    bricks[2u * brick] = words.x;
-    bricks[2u * brick + 1u] = words.y;
+    bricks[brick] = words_of(brick);
 }
 
 // What a ray meets.

@@ -33,29 +33,11 @@ fn crossing(boundary: i32, start: u32, origin: f32, inverse: f32) -> f32 {
     return (boundaries[start + u32(boundary)] - origin) * inverse;
 }
 
-fn exit_x(way: Way, cell: i32) -> f32 {
-    if way.step.x == 0 {
-        return NEVER;
-    }
-    return crossing(cell + way.up.x, 0u, way.origin.x, way.inverse.x);
-}
-
-fn exit_y(way: Way, cell: i32) -> f32 {
-    if way.step.y == 0 {
-        return NEVER;
-    }
-    return crossing(cell + way.up.y, starts().y, way.origin.y, way.inverse.y);
-}
-
-fn exit_z(way: Way, cell: i32) -> f32 {
-    if way.step.z == 0 {
-        return NEVER;
-    }
-    return crossing(cell + way.up.z, starts().z, way.origin.z, way.inverse.z);
-}
-
+// When a cell is left, on each axis.
 fn exits(way: Way, cell: vec3<i32>) -> vec3<f32> {
-    return vec3(exit_x(way, cell.x), exit_y(way, cell.y), exit_z(way, cell.z));
+    let at = vec3<u32>(vec3<i32>(starts()) + cell + way.up);
+    let far = vec3(boundaries[at.x], boundaries[at.y], boundaries[at.z]);
+    return select((far - way.origin) * way.inverse, vec3(NEVER), way.step == vec3(0));
 }
 
 // When the first boundary of an axis is crossed; 0 if the ray starts behind it.
@@ -109,26 +91,20 @@ fn inside(cell: vec3<i32>) -> bool {
     return all(cell >= vec3(0)) && all(cell < vec3<i32>(vec3(cells.x, cells.y, cells.z)));
 }
 
-// Across the boundary that comes first.
-fn stepped(way: Way, given: March) -> March {
-    var march = given;
-    if march.exit.x <= min(march.exit.y, march.exit.z) {
-        march.cell.x += way.step.x;
-        if inside(march.cell) {
-            march.exit.x = exit_x(way, march.cell.x);
-        }
-    } else if march.exit.y <= march.exit.z {
-        march.cell.y += way.step.y;
-        if inside(march.cell) {
-            march.exit.y = exit_y(way, march.cell.y);
-        }
-    } else {
-        march.cell.z += way.step.z;
-        if inside(march.cell) {
-            march.exit.z = exit_z(way, march.cell.z);
-        }
-    }
-    return march;
+// Across the boundary that comes first. Rays of a subgroup that step on different axes would take
+// branches one after another, so there are none; a ray that leaves the grid reads any boundary.
+fn stepped(way: Way, march: March) -> March {
+    let exit = march.exit;
+    let on_x = exit.x <= min(exit.y, exit.z);
+    let on_y = !on_x && exit.y <= exit.z;
+    let axis = vec3(on_x, on_y, !on_x && !on_y);
+    let cell = march.cell + select(vec3(0), way.step, axis);
+    let far = vec3<i32>(starts()) + cell + way.up;
+    let last = i32(cells.x + cells.y + cells.z) + 2;
+    let boundary = boundaries[clamp(select(select(far.z, far.y, on_y), far.x, on_x), 0, last)];
+    let origin = select(select(way.origin.z, way.origin.y, on_y), way.origin.x, on_x);
+    let inverse = select(select(way.inverse.z, way.inverse.y, on_y), way.inverse.x, on_x);
+    return March(cell, select(exit, vec3((boundary - origin) * inverse), axis));
 }
 
 fn soonest(exit: vec3<f32>) -> f32 {

@@ -6,13 +6,15 @@
 mod device;
 mod records;
 mod stages;
+mod timed;
 
 use bytemuck::{Pod, Zeroable};
-use triptych_spec::rsm::{Setting, View as SpecView, Viewpoint};
+use triptych_spec::rsm::{Place as SpecPlace, Setting, View as SpecView, Viewpoint};
 use triptych_spec::vertex::viewport;
 
 pub use records::{Face, Light, Place, Surface};
 pub use stages::{Blocked, Colours, Stages, Surfaces};
+pub use timed::{Span, Timed, Work};
 
 /// What a kernel is told. Twin: `Parameters` in `parameters.wgsl`.
 #[repr(C)]
@@ -128,4 +130,33 @@ impl From<&SpecView> for View {
             unused: [0; 2],
         }
     }
+}
+
+/// All that a frame made by itself, from snapped triangles to the picture. Colours are linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Made {
+    /// What the eye sees.
+    pub seen: Surfaces,
+    /// What the light sees.
+    pub lights: Surfaces,
+    /// The light's depth keys.
+    pub keys: Vec<u32>,
+    /// Intensities of the light's texels.
+    pub intensities: Colours,
+    /// The eye's points in the light's map.
+    pub places: Vec<Option<SpecPlace>>,
+    /// Whether the light reaches them.
+    pub lit: Vec<bool>,
+    /// Light that comes straight.
+    pub direct: Colours,
+    /// Buffer A.
+    pub all: Colours,
+    /// Which texels are blocked.
+    pub bits: Vec<u32>,
+    /// Buffer B.
+    pub blocked: Colours,
+    /// Buffer B, averaged.
+    pub blurred: Colours,
+    /// The picture.
+    pub picture: Colours,
 }

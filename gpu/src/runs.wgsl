@@ -35,3 +35,12 @@ fn below(prim: u32, start: u32, end: u32) -> u32 {
     }
     return low - start;
 }
+
+// The same of a run in any order.
+fn rank(prim: u32, start: u32, end: u32) -> u32 {
+    var smaller = 0u;
+    for (var i = start; i < end; i += 1u) {
+        smaller += u32(prims[i] < prim);
+    }
+    return smaller;
+}

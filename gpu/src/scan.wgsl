@@ -1,7 +1,5 @@
 // Sums over a workgroup.
 
-const WORKGROUP: u32 = 64u;
-
 // Sums that saturate, so that too many entries are seen to be too many.
 fn plus(a: u32, b: u32) -> u32 {
     return select(a + b, 0xffffffffu, a + b < a);

@@ -21,6 +21,10 @@ fn unpacked(word: u32) -> vec3<i32> {
 
 // A ray's search from where it stands, for at most STEPS steps: to the next cell, over an empty
 // brick, or to the next triangle.
+//
+// Rays of a subgroup wait for each other, so that each does one thing until it comes to the other:
+// going on to a cell with a list, then through the list. What f32 leaves open about a triangle,
+// which is rare and long, is settled outside of both.
 fn traced(ray: Ray, given: Hit) -> Hit {
     var hit = given;
     if hit.state == TRACED {
@@ -28,60 +32,82 @@ fn traced(ray: Ray, given: Hit) -> Hit {
     }
     let way = way(ray);
     var cell = unpacked(hit.state);
+    // The end of the list where the ray is; 0 if it is empty, or not known yet.
+    var end = 0u;
     if hit.state == FRESH {
         hit = Hit(NOTHING, NEVER, TRACED, EOL);
         cell = entrance(ray, way);
+        if !inside(cell) {
+            return hit;
+        }
+    } else if hit.at != EOL {
+        end = offsets[number(vec3<u32>(cell)) + 1u];
     }
-    var march = March(cell, exits(way, max(cell, vec3(0))));
+    hit.state = TRACED;
+    var march = March(cell, exits(way, cell));
+    var seen = Brick(EOL, vec2(0u));
     var steps = 0u;
-    while inside(march.cell) && steps < STEPS {
-        steps += 1u;
-        if hit.at == EOL && brick_is_empty(march.cell) {
-            let last = last_of_brick(march.cell, way.up);
-            let exit = soonest(exits(way, last));
-            if ends(ray, hit, exit) {
-                march.cell = vec3(-1);
-                break;
-            }
-            march.cell = past_brick(way, march.cell);
-            if inside(march.cell) {
-                march.exit = exits(way, march.cell);
-            }
-            continue;
-        }
-        let at = number(vec3<u32>(march.cell));
-        let end = offsets[at + 1u];
-        if hit.at == EOL {
-            hit.at = offsets[at];
-        }
-        while hit.at < end && steps < STEPS {
+    while steps < STEPS {
+        while hit.at >= end && steps < STEPS {
             steps += 1u;
-            let prim = prims[hit.at];
-            let meeting = meets(ray, prim);
+            if hit.at != EOL {
+                if ends(ray, hit, soonest(march.exit)) {
+                    return hit;
+                }
+                march = stepped(way, march);
+                if !inside(march.cell) {
+                    return hit;
+                }
+                hit.at = EOL;
+            }
+            seen = brick_at(march.cell, seen);
+            if is_empty(seen) {
+                let last = last_of_brick(march.cell, way.up);
+                let exit = exits(way, last);
+                if ends(ray, hit, soonest(exit)) {
+                    return hit;
+                }
+                march.cell = past_brick(way, march.cell, last, exit);
+                if !inside(march.cell) {
+                    return hit;
+                }
+                march.exit = exits(way, march.cell);
+            } else if is_listed(seen, march.cell) {
+                let at = number(vec3<u32>(march.cell));
+                hit.at = offsets[at];
+                end = offsets[at + 1u];
+            } else {
+                hit.at = 0u;
+                end = 0u;
+            }
+        }
+        if hit.at >= end {
+            break;
+        }
+        var meeting = Meeting(MISSED, 0.0);
+        var prim = 0u;
+        // Read while the one before is looked at.
+        var ahead = prims[min(hit.at, end - 1u)];
+        while hit.at < end && steps < STEPS && meeting.verdict == MISSED {
+            steps += 1u;
             hit.at += 1u;
-            if meeting.met && nearer(meeting.time, prim, hit) {
-                hit.prim = prim;
-                hit.time = meeting.time;
+            prim = ahead;
+            ahead = prims[min(hit.at, end - 1u)];
+            meeting = glance(ray, prim);
+        }
+        if meeting.verdict != MISSED {
+            if meeting.verdict == OPEN {
+                meeting = meets(ray, prim);
+            }
+            if meeting.verdict == MET {
+                hit = nearer(hit, meeting.time, prim);
                 if cells.any == 1u {
-                    hit.state = TRACED;
                     return hit;
                 }
             }
         }
-        if hit.at < end {
-            break;
-        }
-        if ends(ray, hit, soonest(march.exit)) {
-            march.cell = vec3(-1);
-            break;
-        }
-        hit.at = EOL;
-        march = stepped(way, march);
     }
-    if !inside(march.cell) {
-        hit.state = TRACED;
-        return hit;
-    }
+    hit.at = select(hit.at, EOL, end == 0u);
     hit.state = packed(march.cell);
     atomicOr(&unfinished, 1u);
     return hit;
@@ -92,6 +118,8 @@ fn ends(ray: Ray, hit: Hit, exit: f32) -> bool {
     return hit.time < exit || (ray.segment == 1u && exit > 1.0);
 }
 
-fn nearer(time: f32, prim: u32, hit: Hit) -> bool {
-    return time < hit.time || (time == hit.time && prim < hit.prim);
+// The first of two; the smaller id of two at a time.
+fn nearer(hit: Hit, time: f32, prim: u32) -> Hit {
+    let is_first = time < hit.time || (time == hit.time && prim < hit.prim);
+    return Hit(select(hit.prim, prim, is_first), select(hit.time, time, is_first), hit.state, hit.at);
 }

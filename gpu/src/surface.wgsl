@@ -45,7 +45,7 @@ fn towards_viewer(face: u32) -> vec3<f32> {
 // The sign of normal . d, exactly.
 fn sign_along(triangle: u32, d: vec3<f32>) -> i32 {
     let a = corner(triangle, 0u);
-    return volume(d, corner(triangle, 1u) - a, corner(triangle, 2u) - a, 1.0).sign;
+    return volume(Factors(d, corner(triangle, 1u) - a, corner(triangle, 2u) - a, 1.0)).sign;
 }
 
 // How far n . d may be off, over |d|_1, for a unit normal n. With u = 2^-23 for a rounding in

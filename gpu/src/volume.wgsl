@@ -19,15 +19,27 @@ struct Volume {
     sign: i32,
 }
 
+struct Factors {
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+    // How many times its error the volume must be; 1 for a sign alone.
+    least: f32,
+}
+
 // x . (y x z). Where the error could exceed 1 / least of the value, it is worked out again in
-// integers; least is 1 for a sign alone.
-fn volume(x: vec3<f32>, y: vec3<f32>, z: vec3<f32>, least: f32) -> Volume {
-    let value = dot(x, cross(y, z));
-    let sizes = (abs(x.x) + abs(x.y) + abs(x.z)) * largest(y) * largest(z);
-    if abs(value) > VOLUME_ERROR * least * sizes {
+// integers.
+fn volume(factors: Factors) -> Volume {
+    let value = dot(factors.x, cross(factors.y, factors.z));
+    let sizes = sum_norm(factors.x) * largest(factors.y) * largest(factors.z);
+    if abs(value) > VOLUME_ERROR * factors.least * sizes {
         return Volume(value, select(-1, 1, value > 0.0));
     }
-    return exact_volume(vec3<i32>(x), vec3<i32>(y), vec3<i32>(z));
+    return exact_volume(vec3<i32>(factors.x), vec3<i32>(factors.y), vec3<i32>(factors.z));
+}
+
+fn sum_norm(v: vec3<f32>) -> f32 {
+    return abs(v.x) + abs(v.y) + abs(v.z);
 }
 
 fn largest(v: vec3<f32>) -> f32 {

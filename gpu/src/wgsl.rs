@@ -87,6 +87,7 @@ impl Sources {
             "scan",
             "search",
             "surface",
+            "sweep",
             "texel",
             "triangle",
             "vertex",

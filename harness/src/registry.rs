@@ -102,10 +102,19 @@ pub const FAMILIES: &[Family] = &[
         name: "grid",
         chain: Chain::Rays,
         stages: &[
-            in_cells("count", &["count"]),
+            in_cells("count", &["count", "count_chunks"]),
             in_cells("scan", &["scan_tiles", "scan_sums", "scan"]),
-            in_cells("fill", &["fill", "fill_sort", "fill_merge"]),
-            in_cells("link", &["link"]),
+            in_cells(
+                "fill",
+                &[
+                    "fill",
+                    "fill_chunks",
+                    "fill_sort",
+                    "fill_runs",
+                    "fill_merge",
+                ],
+            ),
+            in_cells("link", &["link", "link_chunks"]),
             in_cells("trace", &["trace_bricks", "trace"]),
         ],
         no_corpus: None,

@@ -3,7 +3,7 @@
 use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
-use triptych_gpu::grid::{FRESH, SHORT, TILE, TRACED};
+use triptych_gpu::grid::{CHUNK, FRESH, SHORT, SMALL, TILE, TRACED};
 use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
@@ -39,6 +39,8 @@ fn constants_are_those_of_rust() {
         ("DEPTH_ONE", i64::from(DEPTH_ONE)),
         ("TILE", i64::from(TILE)),
         ("SHORT", i64::from(SHORT)),
+        ("SMALL", i64::from(SMALL)),
+        ("CHUNK", i64::from(CHUNK)),
         ("FRESH", i64::from(FRESH)),
         ("TRACED", i64::from(TRACED)),
         ("PLACE_MAX", i64::from(PLACE_MAX)),

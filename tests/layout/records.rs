@@ -59,7 +59,7 @@ fn the_frame_is_that_of_rust() {
         .collect();
     everywhere("Frame", &(fields, word(size_of::<Frame>())), layout);
     let names = [
-        "x", "y", "z", "overlap", "items", "first", "capacity", "run", "any",
+        "x", "y", "z", "overlap", "items", "chunks", "capacity", "run", "any",
     ];
     let (mut cells, _) = words(&names);
     cells.push(("unused".to_owned(), 48));

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use triptych_spec::grid::axis::Axis;
-use triptych_spec::grid::{Blockers, Membership};
+use triptych_spec::grid::{Blockers, ENTRIES_MAX, Membership};
 
-use super::{Cells, exact};
+use super::{CHUNK, Cells, SMALL, exact};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -23,6 +23,7 @@ pub struct Device<'g> {
     boundaries: wgpu::Buffer,
     corners: wgpu::Buffer,
     unfinished: wgpu::Buffer,
+    chunks: wgpu::Buffer,
 }
 
 impl<'g> Device<'g> {
@@ -50,18 +51,21 @@ impl<'g> Device<'g> {
         let corners = corners.map(exact).map(|[x, y, z]| [x, y, z, 0.0]);
         let corners: Vec<[f32; 4]> = corners.collect();
         let [x, y, z] = axes.each_ref().map(Axis::cells);
+        let chunks = chunks_at_most(triangles, x * y * z);
         Ok(Self {
             cells: Cells {
                 x,
                 y,
                 z,
                 overlap: (membership == Membership::Overlap).into(),
+                chunks,
                 ..Cells::default()
             },
             triangles,
             boundaries: gpu.upload("cell boundaries", &boundaries)?,
             corners: gpu.upload("corners of triangles", &corners)?,
             unfinished: gpu.storage("unfinished", 4)?,
+            chunks: gpu.storage("chunks of large boxes", 8 * u64::from(chunks.max(1)))?,
             gpu,
             kernels,
         })
@@ -124,9 +128,15 @@ impl<'g> Device<'g> {
             ("boundaries", &self.boundaries),
             ("corners", &self.corners),
             ("unfinished", &self.unfinished),
+            ("chunks", &self.chunks),
         ];
         all.extend_from_slice(buffers);
         Ready::new(self.gpu, self.kernels, ("grid", entry), groups, &all)
+    }
+
+    /// A pass that counts what it leaves to be done from zero on.
+    pub(super) fn counting(&self, pass: Ready) -> Ready {
+        pass.after_clearing(self.unfinished.clone())
     }
 
     /// What kernels left to be done, which is nothing afterwards.
@@ -134,27 +144,45 @@ impl<'g> Device<'g> {
         self.gpu.take(&self.unfinished)
     }
 
-    /// Runs a kernel that goes through the cells of each triangle, until it has been through
-    /// all.
+    /// Runs a kernel that goes through the cells of small boxes, and then the one that goes
+    /// through the chunks of large ones; how many those were.
+    ///
+    /// # Errors
+    /// More chunks than boxes that touch [`ENTRIES_MAX`] cells may have, and whatever the device
+    /// reports.
     pub(super) fn sweep(
         &self,
-        entry: &str,
+        [small, large]: [&str; 2],
         capacity: u32,
         buffers: &[(&str, &wgpu::Buffer)],
-    ) -> Result<Duration, GpuError> {
-        let mut time = Duration::ZERO;
-        for first in (0..self.total()).step_by(super::STEPS as usize) {
-            let cells = Cells {
-                items: self.triangles,
-                first,
-                capacity,
-                ..self.cells
-            };
-            time += self.each(entry, cells, buffers)?;
-            if self.take_unfinished()? == 0 {
-                break;
-            }
+    ) -> Result<(Duration, u32), GpuError> {
+        let cells = |items| Cells {
+            items,
+            capacity,
+            ..self.cells
+        };
+        let mut time = self.each(small, cells(self.triangles), buffers)?;
+        let chunks = self.take_unfinished()?;
+        if chunks > self.cells.chunks {
+            return Err(GpuError::Limit {
+                adapter: self.gpu.name.clone(),
+                what: "chunks of large boxes",
+                needed: chunks.into(),
+                limit: self.cells.chunks.into(),
+            });
         }
-        Ok(time)
+        if chunks > 0 {
+            time += self.dispatch(large, cells(chunks), chunks, buffers)?;
+        }
+        Ok((time, chunks))
     }
+}
+
+/// How many chunks the large boxes of so many triangles in so many cells may have: each begins
+/// at most one that is not full, and all boxes together touch at most [`ENTRIES_MAX`] cells.
+fn chunks_at_most(triangles: u32, cells: u32) -> u32 {
+    let large = ENTRIES_MAX / u64::from(SMALL + 1);
+    let most = u64::from(triangles).min(large) + ENTRIES_MAX / u64::from(CHUNK);
+    let of_each = u64::from(triangles) * u64::from(cells.div_ceil(CHUNK));
+    u32::try_from(most.min(of_each)).expect("below 2^21")
 }

@@ -23,6 +23,8 @@ pub struct Stages<'g> {
     bricks: wgpu::Buffer,
     /// Time on the device of what ran last, without transfers.
     pub time: Duration,
+    /// Chunks of large boxes, of the last stage that went through boxes.
+    pub chunks: u32,
     /// Dispatches of the last search, until its rays were done.
     pub dispatches: u32,
 }
@@ -42,6 +44,7 @@ impl<'g> Stages<'g> {
             bricks: gpu.storage("bricks", 8 * bricks)?,
             device,
             time: Duration::ZERO,
+            chunks: 0,
             dispatches: 0,
         })
     }
@@ -52,7 +55,8 @@ impl<'g> Stages<'g> {
     /// Whatever the device reports; so for all stages.
     pub fn count(&mut self) -> Result<Vec<u32>, GpuError> {
         let buffers = [("counts", &self.counts)];
-        self.time = self.device.sweep("count", 0, &buffers)?;
+        let kernels = ["count", "count_chunks"];
+        (self.time, self.chunks) = self.device.sweep(kernels, 0, &buffers)?;
         self.device
             .gpu
             .read(&self.counts, self.device.total() as usize)
@@ -103,7 +107,8 @@ impl<'g> Stages<'g> {
             ("offsets", &self.offsets),
             ("prims", &self.prims),
         ];
-        self.time = self.device.sweep("fill", capacity, &buffers)?;
+        let kernels = ["fill", "fill_chunks"];
+        (self.time, self.chunks) = self.device.sweep(kernels, capacity, &buffers)?;
         if entries <= capacity {
             self.sort(entries)?;
         }
@@ -125,22 +130,16 @@ impl<'g> Stages<'g> {
         if longest <= SHORT {
             return Ok(());
         }
-        let mut merged = self
-            .device
-            .gpu
-            .storage("entries of cells", 4 * u64::from(entries))?;
-        let mut run = 1;
-        while run < longest {
+        let size = 4 * u64::from(entries);
+        let mut merged = self.device.gpu.storage("entries of cells", size)?;
+        for (kernel, run) in long_passes(longest) {
             let buffers = [
                 ("offsets", &self.offsets),
                 ("prims", &self.prims),
                 ("merged", &merged),
             ];
-            self.time += self
-                .device
-                .each("fill_merge", runs(entries, run), &buffers)?;
+            self.time += self.device.each(kernel, runs(entries, run), &buffers)?;
             std::mem::swap(&mut self.prims, &mut merged);
-            run *= 2;
         }
         Ok(())
     }
@@ -162,7 +161,8 @@ impl<'g> Stages<'g> {
             ("entries", &entries),
             ("counter", &counter),
         ];
-        self.time = self.device.sweep("link", capacity, &buffers)?;
+        let kernels = ["link", "link_chunks"];
+        (self.time, self.chunks) = self.device.sweep(kernels, capacity, &buffers)?;
         let attempts: Vec<u32> = gpu.read(&counter, 1)?;
         Ok(Linked {
             heads: gpu.read(&heads, total as usize)?,
@@ -191,11 +191,12 @@ impl<'g> Stages<'g> {
         self.device.each("trace_bricks", bricks, &buffers)
     }
 
-    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry.
+    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry;
+    /// where a dispatch ends, a cell may be looked at again.
     fn rounds(&self) -> u64 {
         let cells = u64::from(self.device.cells.x + self.device.cells.y + self.device.cells.z);
         let entries = self.prims.size() / 4;
-        (cells + entries).div_ceil(u64::from(STEPS)) + 1
+        (cells + entries).div_ceil(u64::from(STEPS - 1)) + 1
     }
 
     fn trace_part(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
@@ -252,6 +253,15 @@ impl<'g> Stages<'g> {
             stage: "trace",
         }
     }
+}
+
+/// Kernels that put lists longer than [`SHORT`] in order, and the runs that each starts from.
+pub(super) fn long_passes(longest: u32) -> impl Iterator<Item = (&'static str, u32)> {
+    let merges = std::iter::successors(Some(SHORT), |run| run.checked_mul(2));
+    let merges = merges.take_while(move |run| *run < longest);
+    let runs = (longest > SHORT).then_some(("fill_runs", 0));
+    runs.into_iter()
+        .chain(merges.map(|run| ("fill_merge", run)))
 }
 
 /// A ray that has not started.

@@ -9,8 +9,8 @@ use triptych_spec::grid::trace::Query;
 use triptych_spec::grid::{Blockers, Membership};
 
 use super::device::Device;
-use super::stages::fresh;
-use super::{Cells, Hit, Packed, SHORT, TILE};
+use super::stages::{fresh, long_passes};
+use super::{Cells, Hit, Packed, TILE};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -40,8 +40,8 @@ pub struct Shape {
     pub entries: u32,
     /// Entries of the longest list.
     pub longest: u32,
-    /// Most cells that a triangle's box touches.
-    pub touched: u32,
+    /// Chunks of large boxes.
+    pub chunks: u32,
     /// Most steps of a ray: dispatches of the searches, any and closest.
     pub rounds: [u32; 2],
 }
@@ -68,42 +68,18 @@ impl<'g> Timed<'g> {
         rays: &[Ray],
         shape: Shape,
     ) -> Result<Self, GpuError> {
-        let device = Device::new(gpu, kernels, blockers, axes, Membership::Box)?;
-        let total = device.total();
-        let tiles = total.div_ceil(TILE);
-        let room = |what, count: u32, size: u64| gpu.storage(what, size * u64::from(count));
+        let room = Room::new(gpu, kernels, blockers, axes, shape)?;
         let packed: Vec<Packed> = rays.iter().map(Packed::from).collect();
         let count = u32::try_from(rays.len()).expect("fewer rays than 2^32");
         let start = gpu.upload("hits", &vec![fresh(); rays.len()])?;
-        let bricks = device.bricks();
-        let buffers = [
-            ("counts", room("counts of cells", total, 4)?),
-            ("offsets", room("offsets of cells", total + 1, 4)?),
-            ("sums", room("sums of tiles", tiles, 4)?),
-            ("prims", room("entries of cells", shape.entries, 4)?),
-            ("merged", room("entries of cells", shape.entries, 4)?),
-            ("bricks", room("bricks", bricks, 8)?),
-            ("rays", gpu.upload("rays", &packed)?),
-            ("hits", room("hits", count, size_of::<Hit>() as u64)?),
-        ];
-        let named: Vec<(&str, &wgpu::Buffer)> = buffers.iter().map(|(n, b)| (*n, b)).collect();
-        let build = build(&device, &named, shape)?;
-        let trace = |query: Query, rounds: u32| -> Result<Vec<Ready>, GpuError> {
-            let cells = Cells {
-                items: count,
-                any: (query == Query::Any).into(),
-                ..device.cells
-            };
-            (0..rounds)
-                .map(|_| device.ready("trace", cells, &named))
-                .collect()
-        };
+        let rays = gpu.upload("rays", &packed)?;
+        let hits = gpu.storage("hits", size_of::<Hit>() as u64 * u64::from(count))?;
+        let trace = |query, rounds| room.search([&rays, &hits], count, query, rounds);
         let spans = [
-            build,
+            room.build(shape)?,
             trace(Query::Any, shape.rounds[0])?,
             trace(Query::Closest, shape.rounds[1])?,
         ];
-        let [.., (_, hits)] = buffers;
         Ok(Self {
             gpu,
             spans,
@@ -141,6 +117,73 @@ impl<'g> Timed<'g> {
     }
 }
 
+/// Room for a grid that is built over and over.
+pub(crate) struct Room<'g> {
+    device: Device<'g>,
+    buffers: Vec<(&'static str, wgpu::Buffer)>,
+}
+
+impl<'g> Room<'g> {
+    /// Uploads triangles and boundaries, and makes room for what a checked run needed.
+    ///
+    /// # Errors
+    /// Limits by name, and whatever the device reports.
+    pub(crate) fn new(
+        gpu: &'g Gpu,
+        kernels: &'g Kernels,
+        blockers: &Blockers,
+        axes: &[Axis; 3],
+        shape: Shape,
+    ) -> Result<Self, GpuError> {
+        let device = Device::new(gpu, kernels, blockers, axes, Membership::Box)?;
+        let total = device.total();
+        let room = |what, count: u32, size: u64| gpu.storage(what, size * u64::from(count));
+        let buffers = vec![
+            ("counts", room("counts of cells", total, 4)?),
+            ("offsets", room("offsets of cells", total + 1, 4)?),
+            ("sums", room("sums of tiles", total.div_ceil(TILE), 4)?),
+            ("prims", room("entries of cells", shape.entries, 4)?),
+            ("merged", room("entries of cells", shape.entries, 4)?),
+            ("bricks", room("bricks", device.bricks(), 8)?),
+        ];
+        Ok(Self { device, buffers })
+    }
+
+    fn named(&self) -> Vec<(&str, &wgpu::Buffer)> {
+        self.buffers.iter().map(|(name, b)| (*name, b)).collect()
+    }
+
+    /// Passes from corners to sorted lists and bricks.
+    ///
+    /// # Errors
+    /// WGSL errors; what the device refuses.
+    pub(crate) fn build(&self, shape: Shape) -> Result<Vec<Ready>, GpuError> {
+        build(&self.device, &self.named(), shape)
+    }
+
+    /// As many dispatches of a search of these rays, with what they have met.
+    ///
+    /// # Errors
+    /// WGSL errors; what the device refuses.
+    pub(crate) fn search(
+        &self,
+        [rays, hits]: [&wgpu::Buffer; 2],
+        items: u32,
+        query: Query,
+        rounds: u32,
+    ) -> Result<Vec<Ready>, GpuError> {
+        let mut named = self.named();
+        named.extend([("rays", rays), ("hits", hits)]);
+        let cells = Cells {
+            items,
+            any: (query == Query::Any).into(),
+            ..self.device.cells
+        };
+        let pass = |_| self.device.ready("trace", cells, &named);
+        (0..rounds).map(pass).collect()
+    }
+}
+
 /// Passes of a build. Counts are zero before it and after it.
 fn build(
     device: &Device<'_>,
@@ -154,33 +197,35 @@ fn build(
     };
     let tiles = total.div_ceil(TILE);
     let mut passes = Vec::new();
-    let sweep = |entry: &str, passes: &mut Vec<Ready>| -> Result<(), GpuError> {
-        for first in (0..shape.touched.max(1)).step_by(super::STEPS as usize) {
-            let cells = Cells {
-                items: device.triangles,
-                first,
-                capacity: shape.entries,
-                ..cells
-            };
-            passes.push(device.ready(entry, cells, named)?);
+    let sweep = |[small, large]: [&str; 2], passes: &mut Vec<Ready>| -> Result<(), GpuError> {
+        let cells = |items| Cells {
+            items,
+            capacity: shape.entries,
+            ..cells
+        };
+        let pass = device.ready(small, cells(device.triangles), named)?;
+        if shape.chunks == 0 {
+            passes.push(pass);
+            return Ok(());
         }
+        passes.push(device.counting(pass));
+        passes.push(device.ready_groups(large, cells(shape.chunks), shape.chunks, named)?);
         Ok(())
     };
-    sweep("count", &mut passes)?;
+    sweep(["count", "count_chunks"], &mut passes)?;
     passes.push(device.ready_groups("scan_tiles", of_cells, tiles, named)?);
     passes.push(device.ready_groups("scan_sums", of_cells, 1, named)?);
     passes.push(device.ready_groups("scan", of_cells, tiles, named)?);
-    sweep("fill", &mut passes)?;
+    sweep(["fill", "fill_chunks"], &mut passes)?;
     passes.push(device.ready("fill_sort", of_cells, named)?);
-    let mut run = 1;
     let mut swapped: Vec<(&str, &wgpu::Buffer)> = named.to_vec();
-    while shape.longest > SHORT && run < shape.longest {
+    for (kernel, run) in long_passes(shape.longest) {
         let cells = Cells {
             items: shape.entries,
             run,
             ..cells
         };
-        passes.push(device.ready("fill_merge", cells, &swapped)?);
+        passes.push(device.ready(kernel, cells, &swapped)?);
         for (name, _) in &mut swapped {
             *name = match *name {
                 "prims" => "merged",
@@ -188,7 +233,6 @@ fn build(
                 other => other,
             };
         }
-        run *= 2;
     }
     let bricks = Cells {
         items: device.bricks(),

@@ -94,12 +94,13 @@ pub const STAGES: [Stage; 21] = [
     Stage {
         name: "count",
         file: "grid",
-        compute: &["count"],
+        compute: &["count", "count_chunks"],
         fragment: &[],
-        contract: "Adds 1 to counts of every cell that lists triangle i of cells.items: those \
-            that its box touches when widened, from number cells.first on; more than STEPS of \
-            them set unfinished, for a dispatch that begins STEPS later. i counts invocations, \
-            rows of num_workgroups.x workgroups.",
+        contract: "First pass: adds 1 to counts of every cell that lists triangle i of \
+            cells.items: those that its box touches when widened. A box that is too large for one \
+            invocation may be left to chunks, of which cells.chunks have room; unfinished, 0 at \
+            first, counts them. Second pass, if it is not 0: a workgroup for each of cells.items \
+            chunks. i counts invocations, or workgroups, in rows of num_workgroups.x workgroups.",
     },
     Stage {
         name: "scan",
@@ -113,22 +114,28 @@ pub const STAGES: [Stage; 21] = [
     Stage {
         name: "fill",
         file: "grid",
-        compute: &["fill", "fill_sort", "fill_merge"],
+        compute: &[
+            "fill",
+            "fill_chunks",
+            "fill_sort",
+            "fill_runs",
+            "fill_merge",
+        ],
         fragment: &[],
-        contract: "First pass: triangle i into the run of every cell that lists it, unless its \
-            address is beyond cells.capacity; counts may be used up. Second: the list of cell \
-            i in order, or its length in unfinished if it exceeds 64. Third, for each power \
-            of two from 1 in cells.run: entry i of a longer list to merged, where two runs in \
-            order become one.",
+        contract: "First and second pass, as for count: triangle i into the run of every cell \
+            that lists it, unless its address is beyond cells.capacity; counts may be used up. \
+            Third: the list of cell i in order, or its length in unfinished if it exceeds 64. If \
+            any does, entry i of a longer list to merged. Fourth: each run of 64 entries is in \
+            order there. Fifth, for cells.run of 64, 128, and so on: two such runs become one.",
     },
     Stage {
         name: "link",
         file: "grid",
-        compute: &["link"],
+        compute: &["link", "link_chunks"],
         fragment: &[],
         contract: "Puts triangle i at the head of the linked list of every cell that lists it, \
-            as for count. The counter counts attempts, also those beyond cells.capacity, which \
-            must touch neither heads nor entries. Heads start as 0xffffffff, which also ends a \
+            in two passes as for count. The counter counts attempts, also those beyond \
+            cells.capacity, which must touch neither heads nor entries. Heads start as 0xffffffff, which also ends a \
             list.",
     },
     Stage {

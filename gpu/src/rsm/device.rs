@@ -84,14 +84,14 @@ impl<'g> Device<'g> {
         }
     }
 
-    /// One invocation for each item; waits for the end.
-    pub(super) fn run(
+    /// One invocation for each item, to be recorded.
+    pub(super) fn ready(
         &self,
         entry: &str,
         told: Parameters,
         view: &wgpu::Buffer,
         buffers: &Buffers<'_>,
-    ) -> Result<Duration, GpuError> {
+    ) -> Result<Ready, GpuError> {
         let uniform = self.gpu.uniform("parameters", &told)?;
         let mut all = vec![
             ("parameters", &uniform),
@@ -101,7 +101,18 @@ impl<'g> Device<'g> {
         ];
         all.extend_from_slice(buffers);
         let groups = told.items.div_ceil(WORKGROUP);
-        Ready::new(self.gpu, self.kernels, ("rsm", entry), groups, &all)?.run(self.gpu)
+        Ready::new(self.gpu, self.kernels, ("rsm", entry), groups, &all)
+    }
+
+    /// One invocation for each item; waits for the end.
+    pub(super) fn run(
+        &self,
+        entry: &str,
+        told: Parameters,
+        view: &wgpu::Buffer,
+        buffers: &Buffers<'_>,
+    ) -> Result<Duration, GpuError> {
+        self.ready(entry, told, view, buffers)?.run(self.gpu)
     }
 
     /// One invocation for each pixel of a picture.
@@ -112,7 +123,7 @@ impl<'g> Device<'g> {
         view: &wgpu::Buffer,
         buffers: &Buffers<'_>,
     ) -> Result<Duration, GpuError> {
-        self.run(entry, of(self.told, size), view, buffers)
+        self.run(entry, self.of(size), view, buffers)
     }
 
     /// One invocation for each pixel of a picture, and some rows of its kernel at a time.
@@ -123,18 +134,33 @@ impl<'g> Device<'g> {
         view: &wgpu::Buffer,
         buffers: &Buffers<'_>,
     ) -> Result<Duration, GpuError> {
-        let side = self.given.side();
-        let rows = (STEPS / side).max(1);
         let mut time = Duration::ZERO;
-        for first in (0..side).step_by(rows as usize) {
-            let told = Parameters {
-                first,
-                rows: rows.min(side - first),
-                ..of(self.told, size)
-            };
+        for told in self.by_rows(size) {
             time += self.run(entry, told, view, buffers)?;
         }
         Ok(time)
+    }
+
+    /// A dispatch of one invocation for each pixel.
+    pub(super) fn of(&self, size: Size) -> Parameters {
+        Parameters {
+            items: size.width * size.height,
+            ..self.told
+        }
+    }
+
+    /// Dispatches of one invocation for each pixel, and some rows of its kernel at a time.
+    pub(super) fn by_rows(&self, size: Size) -> impl Iterator<Item = Parameters> {
+        let side = self.given.side();
+        let rows = (STEPS / side).max(1);
+        let all = self.of(size);
+        (0..side)
+            .step_by(rows as usize)
+            .map(move |first| Parameters {
+                first,
+                rows: rows.min(side - first),
+                ..all
+            })
     }
 
     pub(super) fn upload_seen(
@@ -192,14 +218,6 @@ impl<'g> Device<'g> {
     pub(super) fn sources(&self) -> Result<wgpu::Buffer, GpuError> {
         let rows: Vec<u32> = (0..).take(self.model.triangles.len()).collect();
         self.gpu.upload("sources", &rows)
-    }
-}
-
-/// A dispatch of one invocation for each pixel.
-fn of(told: Parameters, size: Size) -> Parameters {
-    Parameters {
-        items: size.width * size.height,
-        ..told
     }
 }
 

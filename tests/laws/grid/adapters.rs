@@ -2,7 +2,7 @@
 //! bit, and its answer to every ray.
 
 use proptest::prelude::*;
-use triptych_gpu::grid::{Device, Stages};
+use triptych_gpu::grid::{Device, STEPS, Stages};
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::hit::{crossing, timed};
 use triptych_spec::grid::ray::Ray;
@@ -80,6 +80,54 @@ proptest! {
                 let device = Device::new(gpu, kernels, &blockers, &grid.axes, Membership::Box).unwrap();
                 let mut stages = Stages::new(device).unwrap();
                 agrees(&mut stages, &blockers, &grid, &rays)?;
+            }
+        }
+    }
+}
+
+/// So many triangles beside a ray's way, in the first of two cells, and a last one across it, in
+/// either.
+fn beside_and_across(beside: u32, x: i32) -> Blockers {
+    let corners = |x: i32, y: i32| [[x, y, -40], [x, y + 80, 0], [x, y, 40]];
+    let across = (0..beside).map(|_| [0, 1, 2]).chain([[3, 4, 5], [6, 7, 8]]);
+    Blockers {
+        vertices: [corners(-4000, 400), corners(x, -40), corners(4000, 400)].concat(),
+        triangles: across.collect(),
+    }
+}
+
+/// A search that a dispatch cannot end goes on in the next, wherever it stopped: before the last
+/// triangle of a list, after it, and before the next cell.
+#[test]
+fn searches_in_parts() {
+    let two_cells = triptych_spec::grid::resolution::Resolution::Given([2, 1, 1]);
+    let ray = Ray::between([-9000, 0, 0], [9000, 0, 0]);
+    let around = STEPS - 3..STEPS + 3;
+    let all = around.chain([2 * STEPS - 1, 3 * STEPS + 7]);
+    for (beside, x) in all.flat_map(|beside| [(beside, -4000), (beside, 4000)]) {
+        let blockers = beside_and_across(beside, x);
+        let grid = Grid::build(&blockers, two_cells, Membership::Box).expect("within the limits");
+        let listed = beside + u32::from(x < 0);
+        assert_eq!(grid.list([0, 0, 0]).len(), listed as usize);
+        for (gpu, kernels) in devices() {
+            let device = Device::new(gpu, &kernels[0], &blockers, &grid.axes, Membership::Box);
+            let mut stages = Stages::new(device.expect("small")).expect("small");
+            stages.give_offsets(&grid.offsets).expect("small");
+            stages.give_prims(&grid.prims).expect("small");
+            for query in [Query::Any, Query::Closest] {
+                let hits = stages.trace(&[ray, ray], query).expect("an end");
+                let prims = hits.iter().map(|hit| hit.prim);
+                assert_eq!(
+                    prims.collect::<Vec<_>>(),
+                    [beside; 2],
+                    "{beside}, {query:?}"
+                );
+                let least = beside.div_ceil(STEPS);
+                assert!(
+                    stages.dispatches >= least,
+                    "{beside}: {}",
+                    stages.dispatches
+                );
             }
         }
     }

@@ -2,11 +2,21 @@
 //! spec's input decides as the spec does, and reports within its bounds.
 
 use proptest::prelude::*;
-use triptych_gpu::rsm::Stages;
+use triptych_gpu::context::Gpu;
+use triptych_gpu::grid::{Device, Shape};
+use triptych_gpu::kernel::Kernels;
+use triptych_gpu::raster::Path;
+use triptych_gpu::rsm::{Made, Stages, Timed, Work};
+use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::bound::Bounded;
-use triptych_spec::rsm::{Colour, Frame, PLACE_MAX, Surface, blur, compose, project};
-use triptych_spec::vertex::DEPTH_ONE;
+use triptych_spec::grid::Membership;
+use triptych_spec::rsm::{
+    Coarse, Colour, Frame, Gbuffer, Light, PLACE_MAX, Place, Surface, block, blur, compose, direct,
+    gather, place, project,
+};
+use triptych_spec::scene::Size;
+use triptych_spec::vertex::{DEPTH_ONE, SUBPIXEL_BITS, primitives};
 
 use super::kernels::plain;
 use super::loose::given;
@@ -64,10 +74,18 @@ fn near(expected: &[Option<Surface>], stray: &[[u32; 3]], observed: &[Option<Sur
 }
 
 /// Places are the spec's, or those of numbers within the bound of `project`.
-fn places(scene: &Scene, frame: &Frame, stages: &mut Stages) -> Verdict {
-    let observed = stages.place(&frame.seen.surfaces).unwrap();
-    for (pixel, surface) in frame.seen.surfaces.iter().enumerate() {
-        let (expected, observed) = (&frame.places[pixel], &observed[pixel]);
+fn placed(scene: &Scene, seen: &[Option<Surface>], places: &[Option<Place>]) -> Verdict {
+    for (surface, observed) in seen.iter().zip(places) {
+        let seen = Gbuffer {
+            size: Size {
+                width: 1,
+                height: 1,
+            },
+            keys: vec![0],
+            surfaces: vec![*surface],
+            stray: vec![[0; 3]],
+        };
+        let expected = &place(&scene.lamp.view, &seen)[0];
         if expected == observed {
             continue;
         }
@@ -106,7 +124,7 @@ fn agrees(scene: &Scene, frame: &Frame, stages: &mut Stages) -> Verdict {
     let (surfaces, intensity) = stages.rsm(&triangles(&map.surfaces)).unwrap();
     near(&map.surfaces, &map.stray, &surfaces)?;
     admitted("intensity", &frame.rsm.intensity, &intensity)?;
-    places(scene, frame, stages)?;
+    placed(scene, seen, &stages.place(seen).unwrap())?;
 
     let (lit, light) = stages.direct(seen, &frame.places, &map.keys).unwrap();
     prop_assert_eq!(&lit, &frame.direct.lit);
@@ -139,6 +157,87 @@ fn agrees(scene: &Scene, frame: &Frame, stages: &mut Stages) -> Verdict {
     admitted("compose", &expected, &observed.unwrap())
 }
 
+/// Numbers that a device made, as inputs.
+fn exact(colours: &[[f32; 3]]) -> Vec<Colour> {
+    let one = |c: f32| Bounded {
+        value: f64::from(c),
+        bound: 0.0,
+    };
+    colours.iter().map(|c| c.map(one)).collect()
+}
+
+/// A whole frame of a device's own: each stage follows from what it made before.
+fn follows(scene: &Scene, frame: &Frame, made: &Made) -> Verdict {
+    near(&frame.seen.surfaces, &frame.seen.stray, &made.seen)?;
+    near(
+        &frame.rsm.seen.surfaces,
+        &frame.rsm.seen.stray,
+        &made.lights,
+    )?;
+    prop_assert_eq!(&made.keys, &frame.rsm.seen.keys);
+    admitted("intensity", &frame.rsm.intensity, &made.intensities)?;
+    placed(scene, &made.seen, &made.places)?;
+    let (model, lamp, parameters) = (&scene.model, &scene.lamp, &scene.parameters);
+    let seen = Gbuffer {
+        surfaces: made.seen.clone(),
+        ..frame.seen.clone()
+    };
+    let light = |(surface, intensity): (&Option<Surface>, &[f32; 3])| {
+        let (surface, intensity) = ((*surface)?, *intensity);
+        Some(Light { surface, intensity })
+    };
+    let lights: Vec<_> = made
+        .lights
+        .iter()
+        .zip(&made.intensities)
+        .map(light)
+        .collect();
+    let expected = direct(model, &seen, &made.places, lamp, &made.keys, parameters);
+    prop_assert_eq!(&made.lit, &expected.lit);
+    admitted("direct", &expected.light, &made.direct)?;
+    let size = lamp.view.size;
+    let expected = gather(model, &seen, &made.places, &lights, size, parameters);
+    admitted("gather", &expected, &made.all)?;
+    let cells = (&scene.grid, &scene.blockers);
+    let expected = block(model, &seen, &made.places, &lights, size, cells, parameters);
+    prop_assert_eq!(&made.bits, &expected.bits);
+    admitted("block", &expected.light, &made.blocked)?;
+    let coarse = Coarse::new(&seen, parameters);
+    let expected = blur(model, &coarse, &exact(&made.blocked), parameters);
+    admitted("blur", &expected, &made.blurred)?;
+    let inputs = [&made.direct, &made.all].map(|c| exact(c));
+    let expected = compose(
+        model,
+        &seen,
+        inputs.each_ref().map(|c| &c[..]),
+        (&coarse, &exact(&made.blurred)),
+        parameters,
+        scene.setting().background,
+    );
+    admitted("compose", &expected, &made.picture)
+}
+
+/// What the blockers' cells need, by a checked run.
+fn shape(scene: &Scene, (gpu, kernels): (&Gpu, &Kernels)) -> Option<Shape> {
+    let (blockers, axes) = (&scene.blockers, &scene.grid.axes);
+    if blockers.triangles.is_empty() {
+        return None;
+    }
+    let device = Device::new(gpu, kernels, blockers, axes, Membership::Box).unwrap();
+    let mut stages = triptych_gpu::grid::Stages::new(device).unwrap();
+    stages.count().unwrap();
+    let offsets = stages.scan().unwrap();
+    let entries = *offsets.last().unwrap();
+    stages.fill(entries, entries).unwrap();
+    let lengths = offsets.windows(2).map(|run| run[1] - run[0]);
+    Some(Shape {
+        entries,
+        longest: lengths.max().unwrap_or(0),
+        chunks: stages.chunks,
+        rounds: [0; 2],
+    })
+}
+
 proptest! {
     #![proptest_config(config(48))]
 
@@ -149,6 +248,30 @@ proptest! {
             for kernels in kernels {
                 let mut stages = Stages::new(gpu, kernels, &scene.setting()).unwrap();
                 agrees(&scene, &frame, &mut stages)?;
+            }
+        }
+    }
+
+    #[test]
+    fn whole_frames(scene in scenes()) {
+        let frame = scene.frame();
+        let drawn = [&scene.eye, &scene.lamp.view]
+            .map(|view| primitives(&view.scene(&scene.model), SUBPIXEL_BITS));
+        for (gpu, kernels) in devices() {
+            for kernels in kernels {
+                let work = Work {
+                    setting: scene.setting(),
+                    drawn: drawn.each_ref(),
+                    path: Path::Compute,
+                    cells: shape(&scene, (gpu, kernels)),
+                };
+                let timed = Timed::new(gpu, kernels, &work).unwrap();
+                let timer = Timer::new(gpu, &Clock::Host(String::new()), 1).unwrap();
+                // What a frame leaves does not change the next.
+                for _ in 0..2 {
+                    timed.time_whole(&timer).unwrap();
+                    follows(&scene, &frame, &timed.made().unwrap())?;
+                }
             }
         }
     }

@@ -67,6 +67,7 @@ fn shape(
     let offsets = stages.scan().map_err(words)?;
     let entries = offsets.last().copied().unwrap_or(0);
     let prims = stages.fill(entries, entries).map_err(words)?;
+    let chunks = stages.chunks;
     if offsets != grid.offsets || prims != grid.prims {
         return Err("lists unlike the spec's".to_owned());
     }
@@ -90,19 +91,7 @@ fn shape(
     Ok(Shape {
         entries,
         longest: lengths.max().unwrap_or(0),
-        touched: touched(work),
+        chunks,
         rounds,
     })
-}
-
-/// Most cells that a triangle's box touches.
-fn touched(work: &Work<'_>) -> u32 {
-    let cells = triptych_spec::grid::Cells {
-        axes: &work.grid.axes,
-        membership: Membership::Box,
-    };
-    let rows = 0..u32::try_from(work.blockers.triangles.len()).expect("fewer than 2^32");
-    let of = |row| cells.of(work.blockers.corners(row)).count();
-    let most = rows.map(of).max().unwrap_or(0);
-    u32::try_from(most).expect("at most TOTAL_MAX")
 }
