@@ -171,6 +171,8 @@ fn steps(max: u32) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture;
+    use triptych_spec::scene::Size;
 
     #[test]
     fn the_legend_spans_the_scale_and_stays_short() {
@@ -185,13 +187,6 @@ mod tests {
             assert!(steps.is_sorted_by(|a, b| a < b), "{steps:?}");
         }
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::picture;
-    use triptych_spec::scene::Size;
 
     fn picture(title: &str) -> Picture {
         let size = Size {

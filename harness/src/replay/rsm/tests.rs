@@ -3,10 +3,14 @@
 use std::path::Path;
 
 use triptych_spec::camera::Projection;
+use triptych_spec::grid::ray::Ray;
 use triptych_spec::rsm::{Frame, OFFSET_MIN, Viewpoint};
 
+use super::embree::ask_of;
 use super::*;
 use crate::corpus::Entry;
+use crate::embree::Hit;
+use crate::embree::rays::{RayAnswers, RayScene};
 use crate::mesh::Intake;
 use crate::scene::{Loaded, load_text};
 
@@ -165,4 +169,58 @@ fn stages_make_the_frame() {
             assert_eq!(frame.frame, whole, "{keys} {skip}");
         }
     }
+}
+
+/// Where every pixel asks for itself and nothing is blurred, the spec's picture is the one
+/// without noise; where blockers are asked less often, it is not, and Embree's of the same
+/// samples is as far from it.
+#[test]
+fn the_reference_is_the_limit_of_the_picture() {
+    let off = |keys: &str| {
+        let run = RsmRun::new(&scene(keys, SPOT), true).expect("within the limits");
+        let frame = &run.frames[0];
+        let seen = ask(&run, frame).expect("an answer");
+        assert_eq!(
+            (seen.vote.disagree, seen.vote.rays),
+            (0, frame.frame.blocked.rays)
+        );
+        assert!(frame.frame.blocked.light.iter().any(|c| c[0].value > 0.0));
+        let picture = values(&frame.frame.picture);
+        // The same samples have the same answers here, and sums of the same order.
+        assert_eq!(picture, seen.picture);
+        rmse(&picture, &seen.reference)
+    };
+    assert!(off("divisor = 1\nblur = 0") < 1e-15);
+    assert!(off("divisor = 2\nblur = 1") > 1e-6);
+}
+
+/// An observation that says the opposite of every ray from one direction.
+struct Lying(RayScene);
+
+impl RayAnswers for Lying {
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.0.occluded(ray) != (ray.direction[2] > 0)
+    }
+    fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.0.closest(ray)
+    }
+    fn check(&self) -> Result<(), EmbreeError> {
+        self.0.check()
+    }
+}
+
+#[test]
+fn an_oracle_that_lies_is_noticed() {
+    let run = RsmRun::new(&scene("", SPOT), true).expect("within the limits");
+    let frame = &run.frames[0];
+    let scene = RayScene::new(&frame.parts.blockers).expect("within the lattice");
+    let seen = ask_of(&Lying(scene), &run, frame).expect("an answer");
+    assert!(seen.vote.disagree > 10, "{:?}", seen.vote);
+    let judged = judge(&run, &[seen], 1.0);
+    assert!(judged.differ() > 10);
+    assert!(
+        judged.note.contains("RMSE against the reference"),
+        "{}",
+        judged.note
+    );
 }
