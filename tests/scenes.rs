@@ -149,11 +149,20 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
             .collect::<Vec<_>>()
     });
     // Compared or skipped for a reason: every stage says what became of it.
-    let traces = outcome.passes.iter().any(|pass| pass.name == "trace");
-    let chain = if traces { Chain::Rays } else { Chain::Frame };
+    let has = |stage: &str| outcome.passes.iter().any(|pass| pass.name == stage);
+    let chain = match (has("trace"), has("gather")) {
+        (true, _) => Chain::Rays,
+        (_, true) => Chain::Indirect,
+        _ => Chain::Frame,
+    };
     // The folder says what a scene is for.
-    if outcome.rows.iter().any(|r| (r.family == "grid") != traces) {
-        wrong.push("a scene has a [grid] if and only if its family is grid".into());
+    for (family, its_own) in [("grid", Chain::Rays), ("rsm", Chain::Indirect)] {
+        let strange = |r: &Row| (r.family == family) != (chain == its_own);
+        if outcome.rows.iter().any(strange) {
+            wrong.push(format!(
+                "a scene has [{family}] if and only if its family is {family}"
+            ));
+        }
     }
     let all = adapters
         .iter()
@@ -172,7 +181,7 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
             wrong.push(format!("nothing was compared with {leg}, for no reason"));
         }
     }
-    if chain == Chain::Rays {
+    if chain != Chain::Frame {
         return wrong;
     }
     // Embree is asked twice.

@@ -58,7 +58,8 @@ pub struct Row {
     pub admitted_budget: Option<f64>,
     /// Largest error, where there is a bound: in homogeneous pixels for `transform` and
     /// `clip`, in keys for `snap` and Embree, in linear colour for `resolve`, in lengths of the
-    /// ray's direction for `trace`.
+    /// ray's direction for `trace`; of indirect light in steps of the lattice for points, in
+    /// keys for `place`, in linear colour elsewhere.
     #[serde(default)]
     pub error: Option<f64>,
     /// Largest error over bound, where the class is an interval.

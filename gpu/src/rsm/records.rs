@@ -21,7 +21,8 @@ pub struct Face {
     pub colour: [f32; 4],
 }
 
-/// The planes and colours of all triangles.
+/// The planes and colours of all triangles; one of no triangle where there are none, as no
+/// binding may be empty.
 pub(super) fn faces(model: &Model) -> Vec<Face> {
     let face = |(face, [r, g, b]): (&spec::Face, &[f32; 3])| {
         let axis = face.axis();
@@ -39,7 +40,11 @@ pub(super) fn faces(model: &Model) -> Vec<Face> {
             colour: [*r, *g, *b, 0.0],
         }
     };
-    model.faces.iter().zip(&model.colours).map(face).collect()
+    let faces: Vec<Face> = model.faces.iter().zip(&model.colours).map(face).collect();
+    match faces.is_empty() {
+        true => vec![Face::zeroed()],
+        false => faces,
+    }
 }
 
 /// A point that is seen. Twin: `Surface` in `surface.wgsl`.

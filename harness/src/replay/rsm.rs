@@ -7,6 +7,8 @@ mod kernel;
 mod pictures;
 mod setup;
 mod spec;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeSet;
 use std::rc::Rc;

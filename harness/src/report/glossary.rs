@@ -6,7 +6,7 @@ use crate::cause::Cause;
 use crate::row::Class;
 
 /// Terms beside classes and causes.
-const TERMS: [(&str, &str); 17] = [
+const TERMS: [(&str, &str); 21] = [
     (
         "scene",
         "A folder of the corpus: meshes, materials, a camera, and what it is there to show.",
@@ -51,6 +51,25 @@ const TERMS: [(&str, &str); 17] = [
     (
         "depth complexity",
         "How many fragments a pixel's list holds.",
+    ),
+    (
+        "reflective shadow map",
+        "What the lamp sees, texel by texel; each texel that sees something is a small light.",
+    ),
+    (
+        "buffer A, buffer B",
+        "Light of one bounce as if nothing were in its way, and the part of it that blockers \
+         keep away; B has fewer pixels and is blurred. Indirect light is A - B.",
+    ),
+    (
+        "reference",
+        "Of indirect light: the same picture without noise, in which every pixel traces its own \
+         rays to its whole kernel and Embree says what is blocked.",
+    ),
+    (
+        "RMSE",
+        "Root of the mean square of the difference of two pictures, over all channels of all \
+         pixels, in linear colour.",
     ),
     (
         "edge",

@@ -30,7 +30,8 @@ class Viewer {
     return worst ? worst.dataset.at.split(",").map(Number) : this.size.map((side) => side >> 1);
   }
 
-  // A picture on each side: the spec, and the first leg that differs, or the first leg.
+  // A picture on each side: the spec, and the first leg that differs, or what the spec's
+  // own shadows change, or the first leg.
   choices() {
     for (const side of ["left", "right"]) {
       this.part(side).append(...this.titles.map((titles, i) => make("option", { value: i }, titles.join(", "))));
@@ -40,7 +41,9 @@ class Viewer {
     const leg = differs?.slice(DIFFERENCE.length);
     const find = (test) => Math.max(0, this.titles.findIndex((titles) => titles.some(test)));
     this.part("left").value = find((title) => title === "spec");
-    this.part("right").value = find((title) => (leg ? title === leg : title !== "spec"));
+    const unshadowed = "without indirect shadows";
+    const lit = !leg && this.titles.flat().includes(unshadowed) ? unshadowed : leg;
+    this.part("right").value = find((title) => (lit ? title === lit : title !== "spec"));
   }
 
   listen() {
@@ -155,10 +158,11 @@ class Viewer {
     this.lookAt(along.map((part, i) => part * this.size[i]));
   }
 
-  // Moves to a pixel and shows its lists, which come into sight.
+  // Moves to a pixel and shows its lists, if there are any, which come into sight.
   async lookAt(at) {
     this.isOpen = false;
     this.move(at);
+    if (this.sheets.length === 0) return;
     await this.look();
     this.part("lists").scrollIntoView({ block: "nearest" });
   }

@@ -13,10 +13,12 @@ pub fn viewer(scene: &SceneReport) -> Markup {
     let Some(size) = scene.size.filter(|_| !scene.pictures.is_empty()) else {
         return html! {};
     };
+    // Without lists there is only something to compare.
+    let plain = scene.sheets.is_empty();
     html! {
-        section.viewer hidden aria-label={"Pixels of " (clean(&scene.name))}
+        section.viewer.plain[plain] hidden aria-label={"Pixels of " (clean(&scene.name))}
             data-width=(size.width) data-height=(size.height) {
-            h4 { "Compare, and look into pixels" }
+            h4 { @if plain { "Compare pictures" } @else { "Compare, and look into pixels" } }
             div.tools {
                 label { "Left " select.left {} }
                 label { "Right " select.right {} }
@@ -25,19 +27,20 @@ pub fn viewer(scene: &SceneReport) -> Markup {
                     output.factor { "1×" } button.in type="button" aria-label="Larger" { "+" } }
                 label { "Column " input.column type="number" min="0" max=(size.width - 1) value="0"; }
                 label { "Row " input.row type="number" min="0" max=(size.height - 1) value="0"; }
-                button.look type="button" { "Show lists" }
+                button.look type="button" hidden[plain] { "Show lists" }
             }
             div.both {
                 div.room {
                     div.stage tabindex="0" role="group"
-                        aria-label="Pictures: arrow keys move the cursor, Enter shows the lists" {
+                        aria-label=(if plain { "Pictures: arrow keys move the cursor" }
+                            else { "Pictures: arrow keys move the cursor, Enter shows the lists" }) {
                         div.canvas { img.under alt=""; img.over alt=""; span.divider {} span.cursor {} }
                     }
                     input.split type="range" min="0" max="1000" value="500"
                         aria-label="How much of the left picture is shown";
                     p.here aria-live="polite" {}
                 }
-                div.lists.scroll tabindex="0" role="region" aria-label="Lists of the pixel" {
+                div.lists.scroll hidden[plain] tabindex="0" role="region" aria-label="Lists of the pixel" {
                     p.soft { "Click on a pixel of any picture: its three lists appear here." }
                 }
             }

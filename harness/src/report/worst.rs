@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 27] = [
     "leg",
     "all",
     "expect",
@@ -28,6 +28,14 @@ const ORDER: [&str; 19] = [
     "fill",
     "link",
     "trace",
+    "gbuffer",
+    "rsm",
+    "place",
+    "direct",
+    "gather",
+    "block",
+    "blur",
+    "compose",
     "end to end",
     "plan",
 ];

@@ -34,11 +34,11 @@ pub struct Args {
     leg: Vec<Leg>,
     #[command(flatten)]
     on: OnPaths,
-    /// Whose vertices the GPU's later stages get; not of scenes with a grid
+    /// Whose vertices the GPU's later stages get; not of scenes with a grid or indirect light
     #[arg(long, value_name = "WHOSE", default_value = "spec")]
     vertex: Vertices,
     /// Feed the GPU with the spec's results before this stage, its own from there; not in
-    /// scenes with a grid, where every stage is fed so [default: cover]
+    /// scenes with a grid or indirect light, where every stage is fed so [default: cover]
     #[arg(long, value_name = "STAGE")]
     gpu_from: Option<From>,
     /// The user's kernels of a stage in place of ours (repeatable); `STAGE=?` prints the

@@ -40,14 +40,22 @@ pub struct Seen {
 /// # Errors
 /// The first error that Embree reports.
 pub fn ask(run: &RsmRun, frame: &RsmFrame) -> Result<Seen, EmbreeError> {
-    let scene = RayScene::new(&frame.parts.blockers)?;
+    ask_of(&RayScene::new(&frame.parts.blockers)?, run, frame)
+}
+
+/// The same of any observation.
+pub(super) fn ask_of<E: RayAnswers>(
+    scene: &E,
+    run: &RsmRun,
+    frame: &RsmFrame,
+) -> Result<Seen, EmbreeError> {
     let setting = run.setting(frame);
     let lights = frame.frame.rsm.lights();
     let asked = Asked {
         setting: &setting,
         frame: &frame.frame,
         lights: &lights,
-        scene: &scene,
+        scene,
     };
     let start = Instant::now();
     let coarse = asked.coarse()?;

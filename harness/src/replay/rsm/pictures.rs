@@ -18,7 +18,7 @@ pub(super) fn spec(run: &RsmRun) -> Vec<Picture> {
     let mut pictures = Vec::new();
     for (number, frame) in (1..).zip(&run.frames) {
         let [with, without] = [values(&frame.frame.picture), values(&run.unblocked(frame))];
-        let title = |title: &str| title_of(run, title, number);
+        let title = |title: &str| title_of(title, number);
         pictures.push(Picture {
             title: title("spec"),
             caption: "Direct light, and one bounce of it with indirect shadows: A - B.".into(),
@@ -46,7 +46,7 @@ pub(super) fn embree(run: &RsmRun, seen: &[Seen]) -> Vec<Picture> {
     let exposure = exposure(run);
     let mut pictures = Vec::new();
     for (number, (frame, seen)) in (1..).zip(run.frames.iter().zip(seen)) {
-        let title = |title: &str| title_of(run, title, number);
+        let title = |title: &str| title_of(title, number);
         let own = rmse(&values(&frame.frame.picture), &seen.reference);
         let embree = rmse(&seen.picture, &seen.reference);
         pictures.push(Picture {
@@ -76,7 +76,7 @@ pub(super) fn gpu(run: &RsmRun, label: &str, made: &[Vec<[f32; 3]>]) -> Vec<Pict
     let mut shown = Vec::new();
     for (number, (frame, made)) in (1..).zip(run.frames.iter().zip(made)) {
         let wide: Vec<[f64; 3]> = made.iter().map(|pixel| pixel.map(f64::from)).collect();
-        let title = title_of(run, label, number);
+        let title = title_of(label, number);
         let own = single(&values(&frame.frame.picture));
         let difference = pictures::difference(&title, run.setup.eye.size, &own, made);
         shown.push(Picture {
@@ -103,9 +103,9 @@ pub(super) fn causes(run: &RsmRun, spots: &[Spot]) -> Option<Picture> {
     })
 }
 
-/// A title, with the frame's number where there are several.
-pub(super) fn title_of(run: &RsmRun, title: &str, number: usize) -> String {
-    match run.frames.len() {
+/// A title, with the frame's number from the second on.
+fn title_of(title: &str, number: usize) -> String {
+    match number {
         1 => title.to_owned(),
         _ => format!("{title} frame {number}"),
     }
@@ -115,7 +115,7 @@ pub(super) fn title_of(run: &RsmRun, title: &str, number: usize) -> String {
 const MIDDLE_GREY: f64 = 0.18;
 
 /// By what all pictures are multiplied.
-pub(super) fn exposure(run: &RsmRun) -> f64 {
+fn exposure(run: &RsmRun) -> f64 {
     let (mut sum, mut lit) = (0.0, 0.0);
     for frame in &run.frames {
         for [r, g, b] in values(&run.unblocked(frame)) {
@@ -133,7 +133,7 @@ pub(super) fn exposure(run: &RsmRun) -> f64 {
 }
 
 /// A picture as all are shown.
-pub(super) fn exposed(run: &RsmRun, pixels: &[[f64; 3]], exposure: f64) -> Image {
+fn exposed(run: &RsmRun, pixels: &[[f64; 3]], exposure: f64) -> Image {
     let toned = single(&toned(pixels, exposure));
     let image = picture::linear(run.setup.eye.size, &toned);
     Image {

@@ -18,6 +18,9 @@ use crate::vector::{length, sub};
 /// lattice's side.
 const EDGE: u32 = 1 << 16;
 
+/// A reference distance, in steps, that the spec takes.
+const REFERENCE: f64 = 16_777_216.0;
+
 /// What all frames share.
 pub struct Setup {
     /// World space and the lattice: around everything in all frames, and around perspective
@@ -55,14 +58,7 @@ impl Setup {
         let lattice = lattice(loaded, rsm.frames.0, [&eye, &light])?;
         let words = |e: RsmError| e.to_string();
         let lamp = View::new(&light, &lattice, rsm.map.0).map_err(words)?;
-        let distance = length(sub(light.target, light.eye));
-        let reference = rsm.reference.map_or(distance, |length| length.0);
-        let reference = u32::try_from(steps(&lattice, reference)).unwrap_or(u32::MAX);
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "rounding is meant; at most 1e6"
-        )]
-        let strength = rsm.strength.0.map(|c| c as f32);
+        let (strength, reference) = bright(rsm, &light, &lattice);
         let setup = Self {
             eye: View::new(&eye, &lattice, loaded.scene.size).map_err(words)?,
             lamp: Lamp::new(lamp, strength, reference).map_err(words)?,
@@ -165,6 +161,32 @@ fn lattice(loaded: &Loaded, frames: u32, cameras: [&Camera; 2]) -> Result<Lattic
         }),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// The strength of the lamp, and at how many steps from it. A spot light that is so strong at a
+/// distance is four times as strong at half of it; so any distance will do, also those that
+/// are longer than the lattice. A directional light has none.
+fn bright(rsm: &Rsm, light: &Camera, lattice: &Lattice) -> ([f32; 3], u32) {
+    let mut strength = rsm.strength.0;
+    let mut reference = match light.projection {
+        Projection::Orthographic { .. } => 1.0,
+        Projection::Perspective { .. } => {
+            let distance = length(sub(light.target, light.eye));
+            let distance = rsm.reference.map_or(distance, |length| length.0);
+            libm::scalbn(distance, -lattice.exponent)
+        }
+    };
+    // Where it is too strong for a number, the spec refuses it.
+    while reference > REFERENCE && strength.iter().all(|c| c.is_finite()) {
+        reference /= 2.0;
+        strength = strength.map(|c| 4.0 * c);
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
+    let strength = strength.map(|c| c as f32);
+    (
+        strength,
+        u32::try_from(nearest(reference)).unwrap_or(u32::MAX),
+    )
 }
 
 /// A length in steps of the lattice, to the nearest.
