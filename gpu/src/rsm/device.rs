@@ -46,7 +46,8 @@ impl<'g> Device<'g> {
         let corners = triangles.flat_map(|triangle| model.corners(triangle));
         let corners = corners.map(|[x, y, z]| [x as f32, y as f32, z as f32, 0.0]);
         let map = setting.lamp.view.size;
-        let weights = (0..map.pixels()).map(|texel| setting.lamp.weight(texel));
+        let weights =
+            (0..map.pixels()).map(|texel| setting.lamp.weight(texel, setting.parameters.stride));
         #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
         let weights: Vec<f32> = weights.map(|weight| weight as f32).collect();
         Ok(Self {

@@ -6,7 +6,7 @@
 //! compilation, the host's part of drawing (transform, clip and snap).
 //!
 //! The reference is the same light transport with the scene's own kernel, Embree's occlusion of
-//! every pixel's own rays, and no blur. Against it stand the pictures of smaller kernels, of a
+//! every pixel's own rays, and no blur. Against it stand the pictures of coarser kernels, of a
 //! coarser buffer B and of more blur. An adapter is measured only if what it made of a sample of
 //! pixels is what the spec makes of the same surfaces, lights and places.
 

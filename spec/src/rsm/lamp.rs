@@ -42,8 +42,9 @@ impl Lamp {
     /// light's is strength times the squared reference distance times the solid angle of
     /// the texel, its area on the plane at distance 1 times the third power of the cosine
     /// in the texel's middle. A surface gives back its colour's part, of which 1 / pi per
-    /// unit of solid angle straight ahead (Lambert).
-    pub fn weight(&self, texel: usize) -> f64 {
+    /// unit of solid angle straight ahead (Lambert). A kernel that asks every `stride`-th texel
+    /// takes it for the square of `stride` times `stride` around it.
+    pub fn weight(&self, texel: usize, stride: u32) -> f64 {
         let [width, height] = [self.view.size.width, self.view.size.height].map(f64::from);
         let flux = match self.view.projection {
             Projection::Orthographic { height: steps } => {
@@ -60,13 +61,13 @@ impl Lamp {
                 reach * reach / (square * square.sqrt())
             }
         };
-        flux / std::f64::consts::PI
+        flux * f64::from(stride).powi(2) / std::f64::consts::PI
     }
 
     /// Intensity of a texel that sees a triangle. The weight is given to every leg, rounded
     /// to `f32` once.
-    fn intensity(&self, model: &Model, texel: usize, surface: &Surface) -> Colour {
-        let value = self.weight(texel);
+    fn intensity(&self, model: &Model, texel: usize, surface: &Surface, stride: u32) -> Colour {
+        let value = self.weight(texel, stride);
         let weight = Bounded {
             value,
             bound: U * value,
@@ -118,7 +119,7 @@ impl Rsm {
 pub fn rsm(model: &Model, lamp: &Lamp, parameters: &Parameters) -> Rsm {
     let seen = gbuffer(model, &lamp.view, parameters);
     let intensity = |(texel, surface): (usize, &Option<Surface>)| match surface {
-        Some(surface) => lamp.intensity(model, texel, surface),
+        Some(surface) => lamp.intensity(model, texel, surface, parameters.stride),
         None => DARK,
     };
     Rsm {

@@ -189,7 +189,7 @@ fn through_the_map() {
             REFERENCE,
         );
         let lamp = lamp.expect("a lamp");
-        let weights = (0..size.pixels()).map(|texel| lamp.weight(texel));
+        let weights = (0..size.pixels()).map(|texel| lamp.weight(texel, 1));
         weights.sum::<f64>() * std::f64::consts::PI
     };
     let wide = Size {

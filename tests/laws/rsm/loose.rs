@@ -92,7 +92,7 @@ fn strain(scene: &Scene, seed: u64, way: usize) -> [f64; 7] {
     }
     for (texel, surface) in frame.rsm.seen.surfaces.iter().enumerate() {
         let Some(surface) = surface else { continue };
-        let [weight] = f32s([scene.lamp.weight(texel)]);
+        let [weight] = f32s([scene.lamp.weight(texel, scene.parameters.stride)]);
         let colour = scene.model.colours[surface.triangle as usize];
         let observed = [0, 1, 2].map(|i| {
             let strength = m.mul(weight, scene.lamp.strength[i]);

@@ -1,10 +1,10 @@
 //! What is blocked.
 
 use proptest::prelude::*;
-use triptych_spec::bound::Bounded;
+use triptych_spec::bound::{Bounded, U};
 use triptych_spec::grid::hit::crossing;
 use triptych_spec::grid::ray::Ray;
-use triptych_spec::rsm::{Colour, DARK, Frame, Light};
+use triptych_spec::rsm::{Colour, DARK, Frame, Light, Place};
 
 use super::{Scene, agree, facing, given, scenes, worlds};
 use crate::config;
@@ -215,5 +215,41 @@ proptest! {
         })).collect();
         let again = triptych_spec::rsm::gather(&scene.model, &frame.seen, &moved, &lights, size, &scene.parameters);
         prop_assert_eq!(&again, &frame.all);
+    }
+
+    /// Kernels of every `stride`-th texel, begun at each of the texels of a square of that side,
+    /// give the light of all texels on average.
+    #[test]
+    fn strides(mut world in worlds(), stride in 2..4_u32) {
+        (world.parameters.radius, world.parameters.stride) = (20, 1);
+        let whole = world.scene([0; 3], 0).frame();
+        world.parameters.stride = stride;
+        let scene = world.scene([0; 3], 0);
+        let frame = scene.frame();
+        let (lights, size) = (frame.rsm.lights(), frame.rsm.seen.size);
+        let mut mean = vec![DARK; whole.all.len()];
+        let by = stride.cast_signed();
+        for at in (0..by).flat_map(|y| (0..by).map(move |x| [x, y])) {
+            let moved: Vec<_> = frame.places.iter().map(|p| p.map(|p| Place { texel: at, ..p })).collect();
+            let part = triptych_spec::rsm::gather(&scene.model, &frame.seen, &moved, &lights, size, &scene.parameters);
+            for (mean, part) in mean.iter_mut().zip(part) {
+                for (mean, part) in mean.iter_mut().zip(part) {
+                    mean.value += part.value / f64::from(by * by);
+                    mean.bound += part.bound / f64::from(by * by);
+                }
+            }
+        }
+        let inside = |p: &Place| p.texel.iter().all(|c| (0..9).contains(c));
+        for (pixel, place) in whole.places.iter().enumerate() {
+            if place.as_ref().is_some_and(inside) {
+                // Intensities were rounded to `f32` once, each kernel's by itself.
+                let rounded = |c: f64| U * c.abs();
+                let near = (0..3).all(|i| {
+                    let (a, b) = (whole.all[pixel][i], mean[pixel][i]);
+                    (a.value - b.value).abs() <= a.bound + b.bound + 2.0 * rounded(a.value)
+                });
+                prop_assert!(near, "{:?}, {:?}", whole.all[pixel], mean[pixel]);
+            }
+        }
     }
 }

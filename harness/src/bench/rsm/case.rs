@@ -1,7 +1,8 @@
 //! A scene, its reference, and the settings that are held against it.
 
 use triptych_spec::rsm::{
-    Blocked, Coarse, DARK, Frame, Parameters, Setting, direct, gather, gbuffer, place, rsm,
+    Blocked, Coarse, DARK, Frame, Parameters, STRIDE_MAX, Setting, direct, gather, gbuffer, place,
+    rsm,
 };
 use triptych_spec::vertex::{Primitives, SUBPIXEL_BITS, primitives};
 
@@ -59,16 +60,20 @@ impl Case {
         }
     }
 
-    /// The scene's own parameters, then one of them changed: kernels down to a quarter of the
-    /// radius, buffer B from every pixel to every eighth, and up to two pixels of blur.
+    /// The scene's own parameters, then one of them changed: kernels of half and a quarter as
+    /// many texels along a side, over the same part of the map; buffer B from every pixel to
+    /// every eighth; up to two pixels of blur.
     pub(super) fn settings(&self) -> Vec<Parameters> {
         let own = self.setup.parameters;
-        let radii = [own.radius / 2, own.radius / 4];
-        let radii = radii.map(|radius| Parameters { radius, ..own });
+        let kernels = [2, 4].map(|by| Parameters {
+            radius: own.radius / by,
+            stride: (own.stride * by).min(STRIDE_MAX),
+            ..own
+        });
         let divisors = [1, 2, 4, 8].map(|divisor| Parameters { divisor, ..own });
         let blurs = [0, 1, 2].map(|blur| Parameters { blur, ..own });
         let mut all = vec![own];
-        for setting in radii.into_iter().chain(divisors).chain(blurs) {
+        for setting in kernels.into_iter().chain(divisors).chain(blurs) {
             if !all.contains(&setting) {
                 all.push(setting);
             }

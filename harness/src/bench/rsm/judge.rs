@@ -26,14 +26,15 @@ pub(super) fn check(setting: &Setting<'_>, base: &Frame, made: &Made) -> Result<
         ..
     } = setting;
     agree(judge::surfaces(&base.seen, &made.seen))?;
-    agree(judge::surfaces(&base.rsm.seen, &made.lights))?;
+    let map = rsm(model, lamp, parameters);
+    agree(judge::surfaces(&map.seen, &made.lights))?;
     agree(judge::colours(
         "intensities",
-        &base.rsm.intensity,
+        &map.intensity,
         &made.intensities,
         |_| None,
     ))?;
-    if made.keys != base.rsm.seen.keys {
+    if made.keys != map.seen.keys {
         return Err("keys of the map unlike the spec's".to_owned());
     }
     let own = Gbuffer {
