@@ -8,7 +8,7 @@ use triptych_gpu::rsm::Made;
 use triptych_spec::bound::Bounded;
 use triptych_spec::rsm::{
     Coarse, Colour, Frame, Gbuffer, Light, Setting, Surface, block, blur, compose, direct, fine,
-    gather, place,
+    gather, place, rsm,
 };
 
 use crate::compare::Judgement;
