@@ -7,6 +7,7 @@
 //! proves nothing. It survives if no leg kills it. A canary is a mutant that states the
 //! one cause that it must be reported as.
 
+mod ground;
 mod lab;
 mod matrix;
 mod table;

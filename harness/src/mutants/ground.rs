@@ -1,0 +1,240 @@
+//! A scene on which mutants run, once the shipped kernels agree there.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use triptych_gpu::error::GpuError;
+use triptych_gpu::kernel::{Fault, Kernels};
+use triptych_gpu::raster::Path;
+use triptych_gpu::wgsl::{Sources, WgslError};
+use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
+
+use super::{Cell, Mutant};
+use crate::calibrate::Grid;
+use crate::observe::{Observed, Spec};
+use crate::plan::{Plan, RsmPlan};
+use crate::registry::Chain;
+use crate::replay::gpu::{Adapter, From, GpuLeg};
+use crate::replay::grid::{GridLeg, GridRun};
+use crate::replay::rows::Rows;
+use crate::replay::rsm::{RsmLeg, RsmRun};
+use crate::replay::spec::SpecRun;
+use crate::replay::vertex::VertexLeg;
+use crate::row::{Row, Verdict};
+use crate::scene::value::Capacity;
+use crate::scene::{Loaded, load_entry};
+
+/// A scene with what the spec says of it.
+pub(super) struct Ground {
+    loaded: Loaded,
+    plan: Plan,
+    /// By sub-pixel bits.
+    specs: BTreeMap<u32, Observed<Spec, SpecRun>>,
+    /// Of a scene with a grid.
+    grid: Option<Observed<Spec, GridRun>>,
+    /// Of a scene of indirect light.
+    rsm: Option<(Observed<Spec, RsmRun>, RsmPlan)>,
+    /// Where the shipped kernels were seen to agree.
+    pub(super) sound: BTreeSet<(String, Setting)>,
+}
+
+/// How a leg is run. A mutant is compared at the stages that can see its defect.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Setting {
+    path: Path,
+    /// Vertex stages, or those that start from the spec's triangles.
+    vertex: bool,
+    bindings: Option<u64>,
+}
+
+/// A cell, and whether the shipped kernels were asked for it.
+pub(super) type Tried = Result<(Cell, Option<Setting>), String>;
+
+impl Ground {
+    pub(super) fn load(mutant: &Mutant) -> Result<Self, String> {
+        let loaded = load_entry(&mutant.entry(), None).map_err(|e| e.to_string())?;
+        let (mut grid, mut rsm) = (None, None);
+        match loaded.chain() {
+            Chain::Frame => {}
+            Chain::Rays => grid = Some(Observed::new("spec", GridRun::new(&loaded)?)),
+            Chain::Indirect => {
+                let run = Observed::new("spec", RsmRun::new(&loaded, true)?);
+                rsm = Some((run, RsmPlan::new(&loaded, true)));
+            }
+        }
+        Ok(Self {
+            plan: Plan::new(&loaded.scene, true),
+            loaded,
+            grid,
+            rsm,
+            specs: BTreeMap::new(),
+            sound: BTreeSet::new(),
+        })
+    }
+
+    /// Runs the spec on a grid, once.
+    pub(super) fn prepare(&mut self, bits: u32) -> Result<(), String> {
+        let drawn = self.grid.is_none() && self.rsm.is_none();
+        if drawn && !self.specs.contains_key(&bits) {
+            let snapped = primitives(&self.loaded.scene, bits);
+            let run = SpecRun::new(&self.loaded.scene, snapped, &self.plan)?;
+            self.specs.insert(bits, Observed::new("spec", run));
+        }
+        Ok(())
+    }
+
+    /// Runs a mutant on one path of one adapter; before the first on this scene, the
+    /// shipped kernels, or it could die of something else.
+    pub(super) fn leg(&self, mutant: &Mutant, adapter: &mut Adapter, path: Path) -> Tried {
+        let leg = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        if let Some(reason) = cannot_run(adapter, path) {
+            return Ok((Cell::blank(mutant, leg, reason.into()), None));
+        }
+        let native = path == Path::Native;
+        let sources = mutant.sources(native, || self.twice_the_bound());
+        let sources = sources.map_err(|e| e.to_string())?;
+        let setting = Setting {
+            path,
+            vertex: touches_vertices(&sources, native).map_err(|e| e.to_string())?,
+            bindings: mutant.bindings,
+        };
+        if let Some(bytes) = setting.bindings {
+            adapter.gpu.restrict_bindings(bytes);
+        }
+        let cell = self.in_setting(mutant, sources, adapter, setting, leg);
+        adapter.gpu.lift_restrictions();
+        cell
+    }
+
+    fn in_setting(
+        &self,
+        mutant: &Mutant,
+        sources: Sources,
+        adapter: &mut Adapter,
+        setting: Setting,
+        leg: String,
+    ) -> Tried {
+        let new = !self.sound.contains(&(adapter.gpu.name.clone(), setting));
+        if new {
+            let rows = self.rows(adapter, setting).map_err(|e| e.to_string())?;
+            let is = |verdict| rows.iter().any(|r| r.verdict() == verdict);
+            if is(Verdict::Diverge) || !is(Verdict::Agree) {
+                return Err(format!(
+                    "{leg}: the shipped kernels do not agree on {}",
+                    mutant.scene
+                ));
+            }
+        }
+        let rows = self.mutated(adapter, setting, sources, mutant.fault());
+        let rows = rows.map_err(|e| e.to_string())?;
+        let cell = Cell::of(mutant, leg, &rows)?;
+        Ok((cell, new.then_some(setting)))
+    }
+
+    /// Runs a leg with other kernels.
+    fn mutated(
+        &self,
+        adapter: &mut Adapter,
+        setting: Setting,
+        sources: Sources,
+        fault: Option<Fault>,
+    ) -> Result<Vec<Row>, GpuError> {
+        let mutated = kernels(adapter, setting.path).mutated(sources, fault)?;
+        let shipped = std::mem::replace(kernels(adapter, setting.path), mutated);
+        let rows = self.rows(adapter, setting);
+        *kernels(adapter, setting.path) = shipped;
+        rows
+    }
+
+    /// The rows of a leg.
+    fn rows(&self, adapter: &Adapter, setting: Setting) -> Result<Vec<Row>, GpuError> {
+        let Setting { path, vertex, .. } = setting;
+        let Loaded {
+            scene,
+            name,
+            family,
+            file,
+            ..
+        } = &self.loaded;
+        let mut rows = Rows::new(name, family);
+        if let (Some(spec), Some(section)) = (&self.grid, file.grid) {
+            let capacity = section.capacity;
+            let leg = GridLeg::new(adapter, path, spec, capacity);
+            return leg.each(&mut rows).map(|()| rows.rows);
+        }
+        if let Some((spec, plan)) = &self.rsm {
+            let leg = RsmLeg {
+                adapter,
+                path,
+                spec,
+                plan,
+            };
+            return leg.each(&mut rows).map(|()| rows.rows);
+        }
+        let spec = &self.specs[&adapter.bits(path)];
+        if vertex {
+            let leg = VertexLeg {
+                adapter,
+                path,
+                scene,
+                spec,
+                from: From::default(),
+                budget: Some(file.budget.vertex.0),
+            };
+            leg.run(Some(&mut rows))?;
+            return Ok(rows.rows);
+        }
+        let leg = GpuLeg {
+            adapter,
+            path,
+            scene,
+            spec,
+            plan: &self.plan,
+            capacity: match file.abuffer.capacity {
+                Capacity::All => None,
+                stated => Some(stated.nodes(spec.value.lists.attempts)),
+            },
+            from: From::default(),
+        };
+        leg.run(&mut rows)?;
+        Ok(rows.rows)
+    }
+
+    /// The least share of a colour by which every colour of a pixel with layers differs
+    /// by twice its own bound.
+    fn twice_the_bound(&self) -> f64 {
+        let Some(run) = self.specs.get(&SUBPIXEL_BITS).map(|spec| &spec.value) else {
+            return f64::NAN;
+        };
+        let lists = run.sorted.offsets.windows(2);
+        let layered = run
+            .image
+            .iter()
+            .zip(lists)
+            .filter(|(_, list)| list[0] < list[1]);
+        let shares = layered.flat_map(|(pixel, _)| pixel.map(|c| c.bound / c.value));
+        2.0 * shares.fold(0.0, f64::max)
+    }
+}
+
+fn kernels(adapter: &mut Adapter, path: Path) -> &mut Kernels {
+    let Adapter {
+        kernels, native, ..
+    } = adapter;
+    native
+        .as_mut()
+        .filter(|_| path == Path::Native)
+        .unwrap_or(kernels)
+}
+
+fn cannot_run(adapter: &Adapter, path: Path) -> Option<&'static str> {
+    match path {
+        Path::Native if adapter.native.is_none() => Some("no 64-bit integers"),
+        Path::Fragment if adapter.grid == Grid::Unknown => Some("the sub-pixel grid is unknown"),
+        _ => None,
+    }
+}
+
+/// Whether the vertex stages' kernels are not those that ship.
+fn touches_vertices(sources: &Sources, native: bool) -> Result<bool, WgslError> {
+    Ok(sources.link("vertex")?.text != Sources::shipped(native).link("vertex")?.text)
+}
