@@ -1,5 +1,7 @@
 //! Where mutants run: devices, and scenes on which the shipped kernels agree.
 
+mod other;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::resume_unwind;
 use std::thread::ScopedJoinHandle;
@@ -15,13 +17,13 @@ use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::Plan;
 use crate::replay::gpu::{Adapter, From, GpuLeg};
-use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::rows::Rows;
 use crate::replay::spec::SpecRun;
 use crate::replay::vertex::VertexLeg;
 use crate::row::{Row, Verdict};
 use crate::scene::value::Capacity;
 use crate::scene::{Loaded, load_entry};
+use other::Other;
 
 /// Devices, and the scenes that mutants ran on.
 pub struct Lab {
@@ -35,8 +37,8 @@ struct Ground {
     plan: Plan,
     /// By sub-pixel bits.
     specs: BTreeMap<u32, Observed<Spec, SpecRun>>,
-    /// Of a scene with a grid.
-    grid: Option<Observed<Spec, GridRun>>,
+    /// Of a scene with a grid or indirect light.
+    other: Option<Other>,
     /// Where the shipped kernels were seen to agree.
     sound: BTreeSet<(String, Setting)>,
 }
@@ -124,14 +126,10 @@ impl Lab {
 impl Ground {
     fn load(mutant: &Mutant) -> Result<Self, String> {
         let loaded = load_entry(&mutant.entry(), None).map_err(|e| e.to_string())?;
-        let grid = match loaded.file.grid {
-            Some(_) => Some(Observed::new("spec", GridRun::new(&loaded)?)),
-            None => None,
-        };
         Ok(Self {
             plan: Plan::new(&loaded.scene, true),
+            other: Other::of(&loaded)?,
             loaded,
-            grid,
             specs: BTreeMap::new(),
             sound: BTreeSet::new(),
         })
@@ -139,7 +137,7 @@ impl Ground {
 
     /// Runs the spec on a grid, once.
     fn prepare(&mut self, bits: u32) -> Result<(), String> {
-        if self.grid.is_none() && !self.specs.contains_key(&bits) {
+        if self.other.is_none() && !self.specs.contains_key(&bits) {
             let snapped = primitives(&self.loaded.scene, bits);
             let run = SpecRun::new(&self.loaded.scene, snapped, &self.plan)?;
             self.specs.insert(bits, Observed::new("spec", run));
@@ -221,10 +219,8 @@ impl Ground {
             ..
         } = &self.loaded;
         let mut rows = Rows::new(name, family);
-        if let (Some(spec), Some(section)) = (&self.grid, file.grid) {
-            let capacity = section.capacity;
-            let leg = GridLeg::new(adapter, path, spec, capacity);
-            return leg.each(&mut rows).map(|()| rows.rows);
+        if let Some(other) = &self.other {
+            return other.rows(adapter, path, &mut rows).map(|()| rows.rows);
         }
         let spec = &self.specs[&adapter.bits(path)];
         if vertex {

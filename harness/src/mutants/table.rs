@@ -12,11 +12,12 @@ use crate::corpus::{self, Entry};
 use crate::replay::gpu::PathName;
 use crate::text::hex;
 
-const TABLES: [(&str, &str); 4] = [
+const TABLES: [(&str, &str); 5] = [
     ("vertex.toml", include_str!("vertex.toml")),
     ("raster.toml", include_str!("raster.toml")),
     ("abuffer.toml", include_str!("abuffer.toml")),
     ("grid.toml", include_str!("grid.toml")),
+    ("rsm.toml", include_str!("rsm.toml")),
 ];
 
 /// A named defect, and where it must show.
@@ -230,7 +231,7 @@ mod tests {
             for path in m.paths() {
                 let sources = m.sources(path == Path::Native, || 1.0);
                 let sources = sources.unwrap_or_else(|e| panic!("{}: {e}", m.name));
-                for root in ["vertex", "raster", "abuffer", "grid"] {
+                for root in ["vertex", "raster", "abuffer", "grid", "rsm"] {
                     let program = sources
                         .link(root)
                         .and_then(triptych_gpu::wgsl::Linked::parse);
