@@ -25,7 +25,10 @@ pub fn scene(scene: &SceneResult, pairs: &[Pair<'_>], again: &Again, ink: Ink) -
     for pair in pairs {
         let mut rows = pair.rows.iter().filter(diverges);
         let Some(row) = rows.next() else { continue };
-        let later: Vec<&str> = rows.map(|r| r.stage.as_str()).collect();
+        // A stage may have a row for each of its results.
+        let rows = rows.filter(|r| r.stage != row.stage);
+        let mut later: Vec<&str> = rows.map(|r| r.stage.as_str()).collect();
+        later.dedup();
         if lines.is_empty() && !scene.purpose.is_empty() {
             let purpose = format!("   for: {}", clean(&scene.purpose));
             lines.push(ink.paint(&purpose, Style::dim));

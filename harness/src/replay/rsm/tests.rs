@@ -166,7 +166,8 @@ fn stages_make_the_frame() {
             let run = RsmRun::new(&loaded, skip).expect("within the limits");
             let frame = &run.frames[0];
             let whole = Frame::render(&run.setting(frame)).expect("within the limits");
-            assert_eq!(frame.frame, whole, "{keys} {skip}");
+            // Not shown where they differ: a frame is long.
+            assert!(frame.frame == whole, "{keys} {skip}");
         }
     }
 }

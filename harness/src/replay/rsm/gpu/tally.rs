@@ -67,10 +67,13 @@ impl Tally {
             let mut notes: Vec<String> = kind.frames.iter().map(|j| j.note.clone()).collect();
             notes.retain(|note| !note.is_empty());
             notes.dedup();
-            let judgement = Judgement {
-                note: notes.join("; "),
-                ..Judgement::sum(kind.frames)
+            let judgement = Judgement::sum(kind.frames);
+            // A difference is what there is to say.
+            let note = match judgement.described.is_empty() {
+                true => notes.join("; "),
+                false => String::new(),
             };
+            let judgement = Judgement { note, ..judgement };
             let mut a = Observed::<Spec, _>::new(spec, ());
             let mut b = Observed::<Gpu, _>::new(device, ());
             if let Some([spec, device]) = kind.times {
