@@ -104,7 +104,13 @@ pub const FAMILIES: &[Family] = &[
             in_cells("scan", &["scan_tiles", "scan_sums", "scan"]),
             in_cells(
                 "fill",
-                &["fill", "fill_chunks", "fill_sort", "fill_runs", "fill_merge"],
+                &[
+                    "fill",
+                    "fill_chunks",
+                    "fill_sort",
+                    "fill_runs",
+                    "fill_merge",
+                ],
             ),
             in_cells("link", &["link", "link_chunks"]),
             in_cells("trace", &["trace_bricks", "trace"]),

@@ -236,7 +236,8 @@ pub(super) fn long_passes(longest: u32) -> impl Iterator<Item = (&'static str, u
     let merges = std::iter::successors(Some(SHORT), |run| run.checked_mul(2));
     let merges = merges.take_while(move |run| *run < longest);
     let runs = (longest > SHORT).then_some(("fill_runs", 0));
-    runs.into_iter().chain(merges.map(|run| ("fill_merge", run)))
+    runs.into_iter()
+        .chain(merges.map(|run| ("fill_merge", run)))
 }
 
 /// A ray that has not started.

@@ -114,7 +114,13 @@ pub const STAGES: [Stage; 13] = [
     Stage {
         name: "fill",
         file: "grid",
-        compute: &["fill", "fill_chunks", "fill_sort", "fill_runs", "fill_merge"],
+        compute: &[
+            "fill",
+            "fill_chunks",
+            "fill_sort",
+            "fill_runs",
+            "fill_merge",
+        ],
         fragment: &[],
         contract: "First and second pass, as for count: triangle i into the run of every cell \
             that lists it, unless its address is beyond cells.capacity; counts may be used up. \

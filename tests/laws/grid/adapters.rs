@@ -146,9 +146,17 @@ fn searches_in_parts() {
             for query in [Query::Any, Query::Closest] {
                 let hits = stages.trace(&[ray, ray], query).expect("an end");
                 let prims = hits.iter().map(|hit| hit.prim);
-                assert_eq!(prims.collect::<Vec<_>>(), [beside; 2], "{beside}, {query:?}");
+                assert_eq!(
+                    prims.collect::<Vec<_>>(),
+                    [beside; 2],
+                    "{beside}, {query:?}"
+                );
                 let least = beside.div_ceil(STEPS);
-                assert!(stages.dispatches >= least, "{beside}: {}", stages.dispatches);
+                assert!(
+                    stages.dispatches >= least,
+                    "{beside}: {}",
+                    stages.dispatches
+                );
             }
         }
     }
