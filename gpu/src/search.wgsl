@@ -84,26 +84,13 @@ fn traced(ray: Ray, given: Hit) -> Hit {
         if hit.at >= end {
             break;
         }
-        var meeting = Meeting(MISSED, 0.0);
-        var prim = 0u;
-        // Read while the one before is looked at.
-        var ahead = prims[min(hit.at, end - 1u)];
-        while hit.at < end && steps < STEPS && meeting.verdict == MISSED {
-            steps += 1u;
-            hit.at += 1u;
-            prim = ahead;
-            ahead = prims[min(hit.at, end - 1u)];
-            meeting = glance(ray, prim);
-        }
-        if meeting.verdict != MISSED {
-            if meeting.verdict == OPEN {
-                meeting = meets(ray, prim);
-            }
-            if meeting.verdict == MET {
-                hit = nearer(hit, meeting.time, prim);
-                if cells.any == 1u {
-                    return hit;
-                }
+        let looked = looked_through(ray, hit.at, min(end, hit.at + STEPS - steps));
+        steps += looked.at - hit.at;
+        hit.at = looked.at;
+        if looked.meeting.verdict == MET {
+            hit = nearer(hit, looked.meeting.time, looked.prim);
+            if cells.any == 1u {
+                return hit;
             }
         }
     }
@@ -111,6 +98,32 @@ fn traced(ray: Ray, given: Hit) -> Hit {
     hit.state = packed(march.cell);
     atomicOr(&unfinished, 1u);
     return hit;
+}
+
+// How far a list was looked through.
+struct Looked {
+    // Where the rest of it begins.
+    at: u32,
+    // The last triangle, and how it is met.
+    prim: u32,
+    meeting: Meeting,
+}
+
+// A list of at least one, up to the first triangle that is met.
+fn looked_through(ray: Ray, start: u32, end: u32) -> Looked {
+    var looked = Looked(start, 0u, Meeting(MISSED, 0.0));
+    // Read while the one before is looked at.
+    var ahead = prims[start];
+    while looked.at < end && looked.meeting.verdict == MISSED {
+        looked.at += 1u;
+        looked.prim = ahead;
+        ahead = prims[min(looked.at, end - 1u)];
+        looked.meeting = glance(ray, looked.prim);
+    }
+    if looked.meeting.verdict == OPEN {
+        looked.meeting = meets(ray, looked.prim);
+    }
+    return looked;
 }
 
 // Whether nothing after a cell's exit can change the answer.

@@ -9,6 +9,7 @@ pub mod facts;
 pub mod gpu;
 pub mod grid;
 mod hardware;
+mod lanes;
 mod legs;
 mod own_vertices;
 pub mod pictures;

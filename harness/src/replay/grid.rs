@@ -4,17 +4,15 @@ mod embree;
 mod gpu;
 mod spec;
 
-use std::rc::Rc;
-
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 
 use super::facts::Facts;
 use super::gpu::Adapter;
+use super::lanes::Task;
 use super::run::{Run, Stop};
 use crate::cache::Uses;
 use crate::cause::Cause;
-use crate::observe::{Observed, Spec};
 use crate::plan::GridPlan;
 use crate::registry::{Chain, stages_of};
 use crate::row::Class;
@@ -22,20 +20,23 @@ pub use gpu::GridLeg;
 pub use spec::{GridRun, blockers};
 
 impl Run<'_> {
-    /// The spec by itself, then every adapter.
+    /// The spec by itself, then Embree and every adapter.
     pub(super) fn grid(&mut self) -> Result<(), Stop> {
         self.unit(Uses::Nothing, &["grid", "spec"], |run| {
             let spec = run.grid_spec()?;
             run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
             Ok(())
         })?;
+        let mut tasks = Vec::new();
         if self.options.embree {
-            self.unit(Uses::Embree, &["grid", "embree"], Self::grid_vote)?;
+            tasks.push(Task::apart(|run| {
+                run.unit(Uses::Embree, &["grid", "embree"], Self::grid_vote)
+            }));
         }
-        match self.options.gpu {
-            true => self.on_adapters(Self::grid_leg),
-            false => Ok(()),
+        if self.options.gpu {
+            tasks.extend(self.on_adapters(Self::grid_leg));
         }
+        self.side_by_side(tasks)
     }
 
     fn grid_vote(&mut self) -> Result<(), Stop> {
@@ -51,17 +52,6 @@ impl Run<'_> {
         let budget = (!self.loaded.bare).then_some(stated);
         embree::run(&spec, budget, &mut self.rows);
         Ok(())
-    }
-
-    /// The spec's results, computed when first asked for.
-    fn grid_spec(&mut self) -> Result<Rc<Observed<Spec, GridRun>>, Stop> {
-        if let Some(spec) = &self.grid {
-            return Ok(spec.clone());
-        }
-        let run = GridRun::new(self.loaded).map_err(Stop::Input)?;
-        let spec = Rc::new(Observed::new("spec", run));
-        self.grid = Some(spec.clone());
-        Ok(spec)
     }
 
     fn grid_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {

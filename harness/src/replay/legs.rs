@@ -10,59 +10,14 @@ use super::run::{Run, Stop};
 use super::spec::SpecRun;
 use super::vertex::{self, VertexLeg};
 use super::{Options, end_to_end, hardware, own_vertices, skips};
-use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
 use crate::scene::value::Capacity;
 
 impl Run<'_> {
-    /// Every adapter and path; legs that share a sub-pixel grid follow each other.
-    pub(super) fn on_adapters(
-        &mut self,
-        leg: impl Fn(&mut Self, &Adapter, Path) -> Result<(), Stop>,
-    ) -> Result<(), Stop> {
-        for broken in &self.options.broken {
-            self.broken(broken);
-        }
-        if self.adapters.is_empty() && self.options.broken.is_empty() {
-            let reason = "no adapter; `triptych doctor` says what is missing".to_owned();
-            self.rows.skip("all", "spec", "gpu", Class::Exact, reason);
-            return Ok(());
-        }
-        let legs = self
-            .adapters
-            .iter()
-            .flat_map(|adapter| self.options.paths.iter().map(move |path| (adapter, *path)));
-        let mut legs: Vec<(&Adapter, Path)> = legs.collect();
-        legs.sort_by_key(|(adapter, path)| std::cmp::Reverse(adapter.bits(*path)));
-        for (adapter, path) in legs {
-            let wgpu::AdapterInfo {
-                name,
-                driver,
-                driver_info,
-                ..
-            } = &adapter.gpu.info;
-            let bits = adapter.bits(path).to_string();
-            let grid = format!("{:?}", adapter.grid);
-            let skipping = self.tests_skipping(adapter, path).to_string();
-            let inputs = [
-                name,
-                driver,
-                driver_info,
-                path.name(),
-                &bits,
-                &grid,
-                &skipping,
-            ];
-            let words = format!("{name} {driver}");
-            self.unit(Uses::Driver(&words), &inputs, |run| leg(run, adapter, path))?;
-        }
-        Ok(())
-    }
-
     /// An adapter that was asked for is a leg that failed; another is skipped.
-    fn broken(&mut self, broken: &Broken) {
+    pub(super) fn broken(&mut self, broken: &Broken) {
         let label = format!("gpu@{}", broken.name);
         let reason = broken.to_string();
         if broken.asked {
@@ -257,7 +212,7 @@ impl Run<'_> {
     }
 
     /// From a later stage on than coverage, the spec's lists are given: nothing is skipped.
-    fn tests_skipping(&self, adapter: &Adapter, path: Path) -> bool {
+    pub(super) fn tests_skipping(&self, adapter: &Adapter, path: Path) -> bool {
         let Options {
             skip, from, paths, ..
         } = self.options;

@@ -87,6 +87,19 @@ impl Rows {
         });
     }
 
+    /// Adds the rows of a piece of the scene's work.
+    pub fn append(&mut self, part: Self) {
+        let before = self.seen_by.len();
+        let spot = |spot: Spot| Spot {
+            by: before + spot.by,
+            ..spot
+        };
+        self.rows.extend(part.rows);
+        self.described.extend(part.described);
+        self.spots.extend(part.spots.into_iter().map(spot));
+        self.seen_by.extend(part.seen_by);
+    }
+
     /// Adds a row that compared nothing, and why.
     pub fn skip(&mut self, stage: &str, a: &str, b: &str, class: Class, reason: String) {
         let skipped = Some(reason);

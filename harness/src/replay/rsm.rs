@@ -11,16 +11,16 @@ mod spec;
 mod tests;
 
 use std::collections::BTreeSet;
-use std::rc::Rc;
 
 use triptych_gpu::raster::Path;
 
 use super::gpu::Adapter;
+use super::lanes::Task;
 use super::run::{Run, Stop};
 use crate::cache::Uses;
 use crate::compare::{Judgement, compare};
 use crate::embree::EmbreeError;
-use crate::observe::{Embree, Observed, Spec};
+use crate::observe::{Embree, Observed};
 use crate::plan::RsmPlan;
 use crate::row::Class;
 use embree::{Seen, ask, rmse};
@@ -40,13 +40,16 @@ impl Run<'_> {
             }
             Ok(())
         })?;
+        let mut tasks = Vec::new();
         if self.options.embree {
-            self.unit(Uses::Embree, &["rsm", "embree"], Self::rsm_vote)?;
+            tasks.push(Task::apart(|run| {
+                run.unit(Uses::Embree, &["rsm", "embree"], Self::rsm_vote)
+            }));
         }
-        match self.options.gpu {
-            true => self.on_adapters(Self::rsm_leg),
-            false => Ok(()),
+        if self.options.gpu {
+            tasks.extend(self.on_adapters(Self::rsm_leg));
         }
+        self.side_by_side(tasks)
     }
 
     fn rsm_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
@@ -88,17 +91,6 @@ impl Run<'_> {
         if self.options.pictures {
             self.pictures.extend(pictures::gpu(run, label, made));
         }
-    }
-
-    /// The spec's results, computed when first asked for.
-    fn rsm_spec(&mut self) -> Result<Rc<Observed<Spec, RsmRun>>, Stop> {
-        if let Some(spec) = &self.rsm {
-            return Ok(spec.clone());
-        }
-        let run = RsmRun::new(self.loaded, self.options.skip).map_err(Stop::Input)?;
-        let spec = Rc::new(Observed::new("spec", run));
-        self.rsm = Some(spec.clone());
-        Ok(spec)
     }
 
     /// Embree's vote on the rays of stage `block`, and its pictures.

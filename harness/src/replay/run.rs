@@ -1,16 +1,17 @@
 //! One scene under way.
 
 use std::collections::BTreeSet;
-use std::rc::Rc;
+use std::sync::Arc;
 
-use triptych_spec::vertex::{self, SUBPIXEL_BITS};
+use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::facts::Facts;
 use super::gpu::Adapter;
 use super::grid::GridRun;
+use super::lanes::{Shared, Task};
 use super::rows::Rows;
 use super::rsm::RsmRun;
-use super::spec::{SpecRun, Times, timed};
+use super::spec::SpecRun;
 use super::worst::{Errors, Worst};
 use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
@@ -44,11 +45,13 @@ pub(super) struct Run<'a> {
     pub(super) options: &'a Options,
     pub(super) plan: Plan,
     /// The spec's results on the grid that was asked for last.
-    spec: Option<Rc<Observed<Spec, SpecRun>>>,
+    pub(super) spec: Option<Arc<Observed<Spec, SpecRun>>>,
     /// The spec's results of a scene with a grid.
-    pub(super) grid: Option<Rc<Observed<Spec, GridRun>>>,
+    pub(super) grid: Option<Arc<Observed<Spec, GridRun>>>,
     /// The spec's results of a scene with indirect light.
-    pub(super) rsm: Option<Rc<Observed<Spec, RsmRun>>>,
+    pub(super) rsm: Option<Arc<Observed<Spec, RsmRun>>>,
+    /// The same, of all lanes.
+    pub(super) shared: Arc<Shared>,
     pub(super) rows: Rows,
     pub(super) pictures: Vec<Picture>,
     pub(super) sheets: Vec<Sheet>,
@@ -57,7 +60,7 @@ pub(super) struct Run<'a> {
     pub(super) unlike: BTreeSet<u32>,
     pub(super) saved: Vec<(String, f64)>,
     pub(super) facts: Option<Facts>,
-    remarks: Vec<String>,
+    pub(super) remarks: Vec<String>,
 }
 
 impl<'a> Run<'a> {
@@ -70,6 +73,7 @@ impl<'a> Run<'a> {
             spec: None,
             grid: None,
             rsm: None,
+            shared: Arc::default(),
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
             sheets: Vec::new(),
@@ -124,14 +128,19 @@ impl<'a> Run<'a> {
     /// Triangles to a picture.
     fn frame(&mut self) -> Result<(), Stop> {
         self.unit(Uses::Nothing, &["spec"], Self::spec_alone)?;
+        let mut tasks = Vec::new();
         if self.options.embree {
-            self.unit(Uses::Embree, &["embree"], Self::embree)?;
-            self.unit(Uses::Embree, &["embree", embree::WORLD], Self::world)?;
+            tasks.push(Task::apart(|run| {
+                run.unit(Uses::Embree, &["embree"], Self::embree)
+            }));
+            tasks.push(Task::apart(|run| {
+                run.unit(Uses::Embree, &["embree", embree::WORLD], Self::world)
+            }));
         }
-        match self.options.gpu {
-            true => self.on_adapters(Self::leg),
-            false => Ok(()),
+        if self.options.gpu {
+            tasks.extend(self.on_adapters(Self::leg));
         }
+        self.side_by_side(tasks)
     }
 
     /// Does a piece of work, or takes its result from the cache. `uses` and `inputs` are
@@ -189,33 +198,6 @@ impl<'a> Run<'a> {
             self.remarks.push(format!("cache: {error}"));
         }
         Ok(())
-    }
-
-    /// The spec's results on a grid, computed when first asked for. Only the last
-    /// grid's are held: they are large.
-    pub(super) fn spec(&mut self, bits: u32) -> Result<Rc<Observed<Spec, SpecRun>>, Stop> {
-        if let Some(spec) = self
-            .spec
-            .as_ref()
-            .filter(|s| s.value.primitives.bits == bits)
-        {
-            return Ok(spec.clone());
-        }
-        self.spec = None;
-        let scene = &self.loaded.scene;
-        let (positions, transform) = timed(|| vertex::transform(scene));
-        let (polygons, clip) = timed(|| vertex::clip(scene, &positions));
-        let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
-        let mut run = SpecRun::new(scene, primitives, &self.plan).map_err(Stop::Input)?;
-        run.times = Times {
-            transform,
-            clip,
-            snap,
-            ..run.times
-        };
-        let spec = Rc::new(Observed::new("spec", run));
-        self.spec = Some(spec.clone());
-        Ok(spec)
     }
 
     /// What needs no other leg.

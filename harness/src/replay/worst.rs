@@ -51,9 +51,20 @@ impl Errors {
             // What is no number is as far off as can be.
             let far = |error: f32| if error.is_nan() { f32::INFINITY } else { error };
             let error = must.iter().zip(is).map(apart).map(far).fold(0.0, f32::max);
-            let worst = self.0.entry(pixel).or_default();
-            *worst = worst.max(error);
+            self.at_least(pixel, error);
         }
+    }
+
+    /// Notes what other legs have noted.
+    pub fn add(&mut self, others: Self) {
+        for (pixel, error) in others.0 {
+            self.at_least(pixel, error);
+        }
+    }
+
+    fn at_least(&mut self, pixel: u32, error: f32) {
+        let worst = self.0.entry(pixel).or_default();
+        *worst = worst.max(error);
     }
 }
 
