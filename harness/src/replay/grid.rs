@@ -11,7 +11,8 @@ use triptych_gpu::raster::Path;
 
 use super::facts::Facts;
 use super::gpu::Adapter;
-use super::run::{Run, Stop};
+use super::run::Run;
+use super::stop::Stop;
 use crate::cache::Uses;
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
@@ -22,6 +23,12 @@ pub use gpu::GridLeg;
 pub use spec::{GridRun, blockers};
 
 impl Run<'_> {
+    /// The same run, of a scene with a grid whose spec has run.
+    pub(super) fn on_grid(mut self, spec: GridRun) -> Self {
+        self.grid = Some(Rc::new(Observed::new("spec", spec)));
+        self
+    }
+
     /// The spec by itself, then every adapter.
     pub(super) fn grid(&mut self) -> Result<(), Stop> {
         self.unit(Uses::Nothing, &["grid", "spec"], |run| {

@@ -10,6 +10,7 @@ use super::gpu::Adapter;
 use super::grid::GridRun;
 use super::rows::Rows;
 use super::spec::{SpecRun, Times, timed};
+use super::stop::Stop;
 use super::worst::{Errors, Worst};
 use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
@@ -20,20 +21,6 @@ use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
 use crate::sheet::{self, Rays, Sheet};
-
-/// Why a replay ends early.
-pub(super) enum Stop {
-    /// Bad input.
-    Input(String),
-    /// A dump that cannot be written.
-    Dump(std::io::Error),
-}
-
-impl From<std::io::Error> for Stop {
-    fn from(error: std::io::Error) -> Self {
-        Self::Dump(error)
-    }
-}
 
 /// One scene under way.
 pub(super) struct Run<'a> {
