@@ -2,6 +2,7 @@
 
 mod embree;
 mod gpu;
+mod own;
 mod spec;
 
 use std::rc::Rc;
@@ -20,6 +21,7 @@ use crate::plan::GridPlan;
 use crate::registry::{Chain, stages_of};
 use crate::row::Class;
 pub use gpu::GridLeg;
+pub use own::OwnGrid;
 pub use spec::{GridRun, blockers};
 
 impl Run<'_> {
@@ -34,7 +36,7 @@ impl Run<'_> {
         self.unit(Uses::Nothing, &["grid", "spec"], |run| {
             let spec = run.grid_spec()?;
             run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
-            Ok(())
+            run.dump_grid_spec(&spec).map_err(Stop::Dump)
         })?;
         if self.options.embree {
             self.unit(Uses::Embree, &["grid", "embree"], Self::grid_vote)?;
@@ -99,6 +101,16 @@ impl Run<'_> {
         let leg = GridLeg::new(adapter, path, &spec, capacity);
         if let Err(error) = leg.run(&mut self.rows) {
             self.grid_refused(&label, &error);
+            return Ok(());
+        }
+        if self.options.dump.is_none() {
+            return Ok(());
+        }
+        match leg.own() {
+            Ok(Some(own)) => self.dump_grid(&spec.value, &own).map_err(Stop::Dump)?,
+            // A row says already that its lists are damaged.
+            Ok(None) => {}
+            Err(error) => self.grid_refused(&label, &error),
         }
         Ok(())
     }
