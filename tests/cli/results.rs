@@ -181,7 +181,7 @@ fn the_report_tells_no_place_of_this_machine() {
 }
 
 /// Shape and bytes of a NumPy array.
-fn npy(path: &Path) -> (String, Vec<u8>) {
+pub(super) fn npy(path: &Path) -> (String, Vec<u8>) {
     let bytes = fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\0", "{}", path.display());
     let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
@@ -235,64 +235,3 @@ fn dump_writes_what_it_documents() {
         "the lists hold all fragments"
     );
 }
-
-/// A quad that blocks rays: the same arrays of spec and adapter, and the same numbers in all
-/// that decides.
-#[test]
-fn grids_are_dumped_by_every_leg() {
-    let place = Place::new("dump-grid");
-    place.write("corpus/grid/quads/scene.toml", GRID);
-    let arguments = ["replay", "--adapter", "swiftshader", "--path", "compute"];
-    place
-        .run(&[&arguments[..], &["--dump", "out"]].concat())
-        .expect(0);
-    let of = |leg: &str, array: &str| {
-        let file = format!("out/grid/quads/{leg}/grid/{array}.npy");
-        npy(&place.root.join(file)).1
-    };
-    let legs = ["spec", "gpu@SwiftShader-compute"];
-    for array in [
-        "dims",
-        "boundaries",
-        "lattice",
-        "triangles",
-        "offsets",
-        "prims",
-        "rays",
-    ] {
-        let [spec, gpu] = legs.map(|leg| of(leg, array));
-        assert!(!spec.is_empty(), "{array} has numbers");
-        assert_eq!(spec, gpu, "{array}");
-    }
-    // Rays are 7 numbers of 4 bytes, hits 2, times one of 8.
-    let rays = of("spec", "rays").len() / 28;
-    assert_eq!(rays, 6 * 50);
-    let [spec, gpu] = legs.map(|leg| of(leg, "hit"));
-    assert_eq!(spec.len(), 8 * rays);
-    let met = |hit: &[u8]| [0, 4].map(|at| hit[at..at + 4] != [255; 4]);
-    let hits = spec.chunks(8).zip(gpu.chunks(8));
-    assert!(hits.clone().all(|(a, b)| met(a) == met(b)), "met by both");
-    assert!(hits.clone().any(|(a, _)| met(a) == [true; 2]), "some are");
-    let [spec, gpu] = legs.map(|leg| of(leg, "t"));
-    let number = |t: &[u8]| f64::from_le_bytes(t.try_into().expect("eight bytes"));
-    let times = spec.chunks(8).zip(gpu.chunks(8));
-    for ((a, b), (hit, _)) in times.zip(hits) {
-        let [a, b] = [a, b].map(number);
-        assert_eq!(a.is_nan(), !met(hit)[1], "no time where nothing is met");
-        assert!(a.is_nan() == b.is_nan(), "{a} {b}");
-        assert!(a.is_nan() || (a >= 0.0 && b >= 0.0), "{a} {b}");
-    }
-}
-
-/// Two quads that block rays.
-const GRID: &str = r#"
-purpose = "two quads across the way of rays"
-size = [8, 8]
-[[mesh]]
-generate.stack = { layers = 2, size = [4, 4], spacing = 1 }
-[grid]
-resolution = [4, 4, 2]
-rays = { random = 50, aimed = 50, edge = 50, vertex = 50, grazing = 50, cell = 50 }
-[budget]
-edge = 1
-"#;

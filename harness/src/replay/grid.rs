@@ -3,7 +3,9 @@
 mod embree;
 mod gpu;
 mod own;
+mod pictures;
 mod spec;
+mod view;
 
 use std::rc::Rc;
 
@@ -36,6 +38,10 @@ impl Run<'_> {
         self.unit(Uses::Nothing, &["grid", "spec"], |run| {
             let spec = run.grid_spec()?;
             run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
+            if run.shows_grid() {
+                let shown = pictures::spec(&spec.value, &run.loaded.scene);
+                run.pictures.extend(shown);
+            }
             run.dump_grid_spec(&spec).map_err(Stop::Dump)
         })?;
         if self.options.embree {
@@ -59,6 +65,15 @@ impl Run<'_> {
         let stated = self.loaded.file.budget.edge.0;
         let budget = (!self.loaded.bare).then_some(stated);
         embree::run(&spec, budget, &mut self.rows);
+        if self.shows_grid() {
+            match pictures::embree(&spec.value, &self.loaded.scene) {
+                Ok(picture) => self.pictures.push(picture),
+                Err(error) => {
+                    let words = error.to_string();
+                    self.rows.fail("trace", "spec", "embree", None, words);
+                }
+            }
+        }
         Ok(())
     }
 
@@ -99,20 +114,32 @@ impl Run<'_> {
         let spec = self.grid_spec()?;
         let capacity = self.loaded.file.grid.unwrap_or_default().capacity;
         let leg = GridLeg::new(adapter, path, &spec, capacity);
-        if let Err(error) = leg.run(&mut self.rows) {
-            self.grid_refused(&label, &error);
-            return Ok(());
+        let more = leg.run(&mut self.rows).and_then(|()| self.beside(&leg));
+        match more {
+            Ok(dumped) => dumped.map_err(Stop::Dump),
+            Err(error) => {
+                self.grid_refused(&label, &error);
+                Ok(())
+            }
+        }
+    }
+
+    /// Picture and dump of a leg. Where its lists are damaged, which a row says, there is
+    /// neither.
+    fn beside(&mut self, leg: &GridLeg<'_>) -> Result<std::io::Result<()>, GpuError> {
+        if self.shows_grid() {
+            self.pictures.extend(leg.look(&self.loaded.scene)?);
         }
         if self.options.dump.is_none() {
-            return Ok(());
+            return Ok(Ok(()));
         }
-        match leg.own() {
-            Ok(Some(own)) => self.dump_grid(&spec.value, &own).map_err(Stop::Dump)?,
-            // A row says already that its lists are damaged.
-            Ok(None) => {}
-            Err(error) => self.grid_refused(&label, &error),
-        }
-        Ok(())
+        let own = leg.own()?;
+        Ok(own.map_or(Ok(()), |own| self.dump_grid(&leg.spec.value, &own)))
+    }
+
+    /// Whether pictures are kept, and there is something to see.
+    fn shows_grid(&self) -> bool {
+        self.options.pictures && !self.loaded.scene.triangles.is_empty()
     }
 
     /// What kept a device from a result. All its buffers are sized by the scene: a limit is a

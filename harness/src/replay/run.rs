@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
+use triptych_spec::scene::Size;
 use triptych_spec::vertex::{self, SUBPIXEL_BITS};
 
 use super::facts::Facts;
@@ -84,7 +85,7 @@ impl<'a> Run<'a> {
         Ok(Outcome {
             name: self.loaded.name.clone(),
             purpose: self.loaded.file.purpose.0.clone(),
-            size: Some(self.loaded.scene.size),
+            size: self.seen_size(),
             rows: self.rows.rows,
             described: self.rows.described,
             worst,
@@ -95,6 +96,18 @@ impl<'a> Run<'a> {
             sheets: shown::once(self.sheets),
             remarks: self.remarks,
         })
+    }
+
+    /// The size of the pictures: the target's, but those of a grid have one of their own.
+    fn seen_size(&self) -> Option<Size> {
+        let first = self.pictures.first();
+        match self.loaded.file.grid {
+            None => Some(self.loaded.scene.size),
+            Some(_) => first.map(|Picture { image, .. }| Size {
+                width: image.width,
+                height: image.height,
+            }),
+        }
     }
 
     /// Triangles to a picture.

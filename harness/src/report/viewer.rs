@@ -13,10 +13,11 @@ pub fn viewer(scene: &SceneReport) -> Markup {
     let Some(size) = scene.size.filter(|_| !scene.pictures.is_empty()) else {
         return html! {};
     };
+    let lists = !scene.sheets.is_empty();
     html! {
         section.viewer hidden aria-label={"Pixels of " (clean(&scene.name))}
             data-width=(size.width) data-height=(size.height) {
-            h4 { "Compare, and look into pixels" }
+            h4 { @if lists { "Compare, and look into pixels" } @else { "Compare" } }
             div.tools {
                 label { "Left " select.left {} }
                 label { "Right " select.right {} }
@@ -25,7 +26,7 @@ pub fn viewer(scene: &SceneReport) -> Markup {
                     output.factor { "1×" } button.in type="button" aria-label="Larger" { "+" } }
                 label { "Column " input.column type="number" min="0" max=(size.width - 1) value="0"; }
                 label { "Row " input.row type="number" min="0" max=(size.height - 1) value="0"; }
-                button.look type="button" { "Show lists" }
+                button.look type="button" hidden[!lists] { "Show lists" }
             }
             div.both {
                 div.room {
@@ -37,7 +38,7 @@ pub fn viewer(scene: &SceneReport) -> Markup {
                         aria-label="How much of the left picture is shown";
                     p.here aria-live="polite" {}
                 }
-                div.lists.scroll tabindex="0" role="region" aria-label="Lists of the pixel" {
+                div.lists.scroll hidden[!lists] tabindex="0" role="region" aria-label="Lists of the pixel" {
                     p.soft { "Click on a pixel of any picture: its three lists appear here." }
                 }
             }

@@ -4,12 +4,16 @@ use triptych_gpu::error::GpuError;
 use triptych_gpu::grid::{Hit, Stages};
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::grid::trace::Query;
+use triptych_spec::scene::Scene;
 
 use super::gpu::{DAMAGED, GridLeg};
+use super::pictures;
+use super::view::View;
 use crate::compare::Judgement;
 use crate::dump::GridHit;
 use crate::observe::{Gpu, Observed};
 use crate::replay::rows::Rows;
+use crate::report::Picture;
 use crate::row::Class;
 
 impl GridLeg<'_> {
@@ -44,6 +48,24 @@ impl GridLeg<'_> {
         Ok(known.then_some([offsets, prims]))
     }
 
+    /// What the device sees through its own lists, for the report; `None` if they are damaged.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn look(&self, scene: &Scene) -> Result<Option<Picture>, GpuError> {
+        let mut stages = self.stages()?;
+        if self.own_lists(&mut stages)?.is_none() {
+            return Ok(None);
+        }
+        let view = View::new(&self.spec.value.grid);
+        let seen = view.seen(scene, |rays, query| {
+            let hits = stages.trace(rays, query)?;
+            let met = |hit: &Hit| Some((met(hit)?, f64::from(hit.time)));
+            Ok::<_, GpuError>(hits.iter().map(met).collect())
+        })?;
+        Ok(Some(pictures::leg(&view, &self.label(), &seen)))
+    }
+
     /// Everything by the device alone, for a dump; `None` if its lists are damaged.
     ///
     /// # Errors
@@ -56,7 +78,6 @@ impl GridLeg<'_> {
         let rays = &self.spec.value.rays;
         let any = stages.trace(rays, Query::Any)?;
         let closest = stages.trace(rays, Query::Closest)?;
-        let met = |hit: &Hit| (hit.prim != NOTHING).then_some(hit.prim);
         let hits = any.iter().zip(&closest).map(|(any, closest)| GridHit {
             any: met(any),
             closest: met(closest).map(|prim| (prim, f64::from(closest.time))),
@@ -78,4 +99,9 @@ pub struct OwnGrid {
     pub prims: Vec<u32>,
     /// What its rays meet.
     pub hits: Vec<GridHit>,
+}
+
+/// The triangle that a hit names.
+fn met(hit: &Hit) -> Option<u32> {
+    (hit.prim != NOTHING).then_some(hit.prim)
 }
