@@ -14,8 +14,18 @@
 //! | `abuffer/prim` | u32, n | row of `vertex/prims` |
 //! | `abuffer/mask` | u32, n | covered samples |
 //! | `abuffer/rgba` | f32, n × 4 | linear colour and opacity |
+//! | `grid/dims` | u32, 3 | cells along x, y and z |
+//! | `grid/boundaries` | i32, dims + 3 | where cells begin and end on x, then y, then z, in lattice steps |
+//! | `grid/lattice` | f64, 4 | the point of the world that is 0, and the size of a step |
+//! | `grid/triangles` | i32, m × 3 × 3 | corners in lattice steps |
+//! | `grid/offsets` | u32, cells + 1 | where each cell's list starts; x runs fastest, then y |
+//! | `grid/prims` | u32, n | rows of `grid/triangles`, rising in each list |
+//! | `grid/rays` | i32, r × 7 | origin and direction in lattice steps; 1 if it ends at their sum |
+//! | `grid/hit` | u32, r × 2 | row of `grid/triangles` that is met: any, closest; 2^32 - 1 for none |
+//! | `grid/t` | f64, r | when the closest is met, in lengths of the direction; NaN for none |
 //! | `<stage>/<image>` | f32, h × w × 3 | linear colours; also `.exr` and `.png` |
 
+mod grid;
 mod name;
 mod stages;
 
@@ -29,6 +39,7 @@ use serde::{Deserialize, Serialize};
 use triptych_spec::scene::Size;
 
 use crate::picture;
+pub use grid::{GridArrays, GridHit};
 use name::component;
 
 /// The folder of a dump.

@@ -35,11 +35,15 @@ pub enum Embree {}
 /// A closed-form answer that a scene states.
 pub enum Analytic {}
 
+/// Every ray against every triangle, without a grid.
+pub enum Exhaustive {}
+
 /// Labels that may stand on the two sides of a comparison.
 pub trait Against<B> {}
 impl Against<Gpu> for Spec {}
 impl Against<Embree> for Spec {}
 impl Against<Analytic> for Spec {}
+impl Against<Exhaustive> for Spec {}
 impl Against<GpuUnskipped> for Gpu {}
 
 /// A value and the leg that it comes from.

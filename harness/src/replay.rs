@@ -19,6 +19,7 @@ mod run;
 mod shown;
 pub mod skips;
 pub mod spec;
+mod stop;
 pub mod vertex;
 pub mod worst;
 
@@ -33,12 +34,13 @@ use crate::plan::Pass;
 pub use crate::plan::passes;
 use crate::report::Picture;
 use crate::row::{Class, Row};
-use crate::scene::{LoadError, load_entry};
+use crate::scene::{LoadError, Loaded, load_entry};
 use crate::sheet::Sheet;
 use facts::Facts;
 use gpu::{Adapter, Broken, From, Vertices};
+use grid::GridRun;
 use rows::Rows;
-use run::{Run, Stop};
+use run::Run;
 use worst::Worst;
 
 /// Of which scenes Embree is asked in world space.
@@ -140,10 +142,7 @@ pub fn replay(
     match load_entry(entry, options.seed) {
         Ok(loaded) => Run::new(&loaded, adapters, options)
             .all()
-            .map_err(|e| match e {
-                Stop::Input(message) => InputError::new(&entry.path, message),
-                Stop::Dump(error) => InputError::new(&entry.path, format!("dump: {error}")),
-            }),
+            .map_err(|stop| InputError::new(&entry.path, stop.words())),
         Err(LoadError::Input(error)) => Err(error),
         Err(missing @ LoadError::Missing { .. }) => {
             let mut rows = Rows::new(&entry.name, &entry.family);
@@ -151,6 +150,21 @@ pub fn replay(
             Ok(Outcome::empty(entry, rows))
         }
     }
+}
+
+/// Replays a scene with a grid of which the spec's side is known, through all other legs.
+///
+/// # Errors
+/// Bad input, in one line.
+pub fn replay_grid(
+    loaded: &Loaded,
+    spec: GridRun,
+    adapters: &[Adapter],
+    options: &Options,
+) -> Result<Vec<Row>, String> {
+    let run = Run::new(loaded, adapters, options).on_grid(spec);
+    let outcome = run.all().map_err(|stop| stop.words())?;
+    Ok(outcome.rows)
 }
 
 impl Outcome {

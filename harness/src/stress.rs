@@ -7,8 +7,10 @@
 //! [`judge`] says what must hold of them; module `files` writes them down.
 
 mod files;
+pub mod grid;
 mod judge;
 mod measure;
+mod notes;
 mod numbers;
 mod shot;
 mod sweeps;

@@ -181,7 +181,7 @@ fn the_report_tells_no_place_of_this_machine() {
 }
 
 /// Shape and bytes of a NumPy array.
-fn npy(path: &Path) -> (String, Vec<u8>) {
+pub(super) fn npy(path: &Path) -> (String, Vec<u8>) {
     let bytes = fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\0", "{}", path.display());
     let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));

@@ -59,6 +59,79 @@ fn a_sweep_is_printed_and_written() {
 }
 
 #[test]
+fn grids_are_driven_to_their_extremes() {
+    let place = Place::new("stress-grid");
+    let arguments = [
+        "bench",
+        "grid",
+        "--stress",
+        "offset",
+        "--adapter",
+        "swiftshader",
+    ];
+    let files = ["--json", "o.jsonl", "--csv", "o.csv", "--out", "out"];
+    let ran = place.run(&[&arguments[..], &files].concat()).expect(0);
+    assert_eq!(ran.stderr, "");
+    let lines = ran.stdout.lines().map(str::trim_start);
+    let steps = lines.filter(|line| line.starts_with("1e")).count();
+    assert_eq!(steps, 13, "a line for each step:\n{}", ran.stdout);
+    let refusal = "refused: `2.0000000000000002e39` is not finite";
+    assert!(ran.stdout.contains(refusal), "{}", ran.stdout);
+
+    let mut rows = json(&place.root.join("o.jsonl"));
+    let summary = rows.pop().expect("a summary");
+    assert_eq!(count(&summary, "diverging"), 0);
+    for leg in ["every triangle", "embree", "gpu@SwiftShader/compute"] {
+        let of_leg = rows.iter().filter(|r| r["b"] == leg);
+        assert!(of_leg.count() >= 12, "{leg}: each step that is not refused");
+    }
+    let table = fs::read_to_string(place.root.join("o.csv")).expect("a table");
+    let lines = table.lines().count();
+    assert_eq!(lines, rows.len() + 2, "a line each, names, and a refusal");
+    let page = ran.stdout.lines().last().expect("where the page lies");
+    let page = page.strip_prefix("Report: ").expect("where the page lies");
+    let page = fs::read_to_string(place.root.join(page)).expect("a page");
+    for part in [
+        "# Stability of grids and rays, ",
+        "| spec |",
+        "The longest walk",
+        "| 1e6 |",
+    ] {
+        assert!(page.contains(part), "{page} lacks {part}");
+    }
+    // Every step can be replayed by itself.
+    let scene = "out/scenes-grid/offset/1e4/scene.toml";
+    let replay = ["replay", scene, "--leg", "embree", "--no-cache"];
+    place.run(&replay).expect(0);
+}
+
+#[test]
+fn extremes_of_grids_have_their_own_help() {
+    let place = Place::new("stress-grid-help");
+    let ran = place
+        .run(&["bench", "grid", "--stress", "no-such"])
+        .expect(2);
+    assert_eq!(
+        ran.stderr,
+        "triptych: no-such: no sweep is called so; there are: aligned, cells, scale, offset, near, \
+         length, sliver, tiny, sparse\n"
+    );
+    let own = ["bench", "grid", "--stress", "--help"];
+    for arguments in [&own[..], &["bench", "grid", "--help"]] {
+        let help = place.run(arguments).expect(0);
+        assert!(help.stdout.contains("Examples:"), "{}", help.stdout);
+        assert!(
+            help.stdout.contains("bench grid --stress"),
+            "{}",
+            help.stdout
+        );
+    }
+    place
+        .run(&["bench", "grid", "dragon", "--stress"])
+        .expect(2);
+}
+
+#[test]
 fn one_path_alone_is_asked_for() {
     let place = Place::new("stress-path");
     let arguments = ["bench", "--stress", "sliver", "--adapter", "llvmpipe"];

@@ -1,6 +1,7 @@
 //! `triptych bench`.
 
 pub(super) mod abuffer;
+mod files;
 mod grid;
 mod legs;
 mod rsm;

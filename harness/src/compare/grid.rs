@@ -1,6 +1,7 @@
 //! Grids: cells' lists, and what rays meet.
 
 mod cells;
+mod exhaustive;
 mod linked;
 mod traced;
 
@@ -11,6 +12,7 @@ use super::Judgement;
 use crate::row::Class;
 
 pub use cells::{counts, counts_within, entries, offsets, overflowed, within};
+pub use exhaustive::{exhaustive, nearest_of_each};
 pub use linked::linked;
 pub use traced::{Asked, any, closest};
 

@@ -1,6 +1,10 @@
 use std::fmt::Debug;
 
 use triptych_spec::abuffer::{build, opaque, sort};
+use triptych_spec::grid::lattice::Lattice;
+use triptych_spec::grid::ray::Ray;
+use triptych_spec::grid::resolution::Resolution;
+use triptych_spec::grid::{Blockers, Grid, Membership};
 use triptych_spec::matrix::Matrix;
 use triptych_spec::scene::{Scene, Triangle, Vertex};
 use triptych_spec::vertex::primitives;
@@ -121,6 +125,61 @@ fn stages_come_back_with_their_shapes_and_types() {
     is(dir.join("abuffer/mask.npy"), &[16], "<u4", &[1_u32; 16]);
     let rgba = [0.25_f32, 0.5, 1.0, 0.5].repeat(16);
     is(dir.join("abuffer/rgba.npy"), &[16, 4], "<f4", &rgba);
+}
+
+/// A cell around a triangle, and a ray that meets it half way, beside one that does not.
+#[test]
+fn grids_come_back_with_their_shapes_and_types() {
+    let folder = Folder::new("grid");
+    let blockers = Blockers {
+        vertices: vec![[0, 0, 0], [90, 0, 0], [0, 90, 0]],
+        triangles: vec![[0, 1, 2]],
+    };
+    let grid = Grid::build(&blockers, Resolution::Given([1; 3]), Membership::Box);
+    let grid = grid.expect("a cell");
+    let rays = [
+        Ray::between([10, 10, -5], [10, 10, 5]),
+        Ray {
+            segment: false,
+            ..Ray::between([80, 80, -5], [80, 80, 5])
+        },
+    ];
+    let hits = [
+        GridHit {
+            any: Some(0),
+            closest: Some((0, 0.5)),
+        },
+        GridHit::default(),
+    ];
+    let leg = Dump::new(&folder.0).leg("grid/one", "gpu@x/compute");
+    leg.grid(&GridArrays {
+        lattice: &Lattice {
+            centre: [1.0, 2.0, 3.0],
+            exponent: -2,
+        },
+        axes: &grid.axes,
+        blockers: &blockers,
+        offsets: &grid.offsets,
+        prims: &grid.prims,
+        rays: &rays,
+        hits: &hits,
+    })
+    .expect("written");
+    let file = |name: &str| leg.path().join(format!("grid/{name}.npy"));
+    is(file("dims"), &[3], "<u4", &[1_u32; 3]);
+    let boundaries = [-16, 106, -16, 106, -16, 16];
+    is(file("boundaries"), &[6], "<i4", &boundaries);
+    is(file("lattice"), &[4], "<f8", &[1.0, 2.0, 3.0, 0.25]);
+    let corners = [0, 0, 0, 90, 0, 0, 0, 90, 0];
+    is(file("triangles"), &[1, 3, 3], "<i4", &corners);
+    is(file("offsets"), &[2], "<u4", &[0_u32, 1]);
+    is(file("prims"), &[1], "<u4", &[0_u32]);
+    let flat = [10, 10, -5, 0, 0, 10, 1, 80, 80, -5, 0, 0, 10, 0];
+    is(file("rays"), &[2, 7], "<i4", &flat);
+    is(file("hit"), &[2, 2], "<u4", &[0, 0, u32::MAX, u32::MAX]);
+    let (shape, kind, times) = read::<f64>(file("t"));
+    assert_eq!((&shape[..], &kind[..]), (&[2][..], "'<f8'"));
+    assert!(times[0] == 0.5 && times[1].is_nan(), "{times:?}");
 }
 
 #[test]

@@ -2,7 +2,12 @@
 
 mod embree;
 mod gpu;
+mod own;
+mod pictures;
 mod spec;
+mod view;
+
+use std::sync::Arc;
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
@@ -10,22 +15,35 @@ use triptych_gpu::raster::Path;
 use super::facts::Facts;
 use super::gpu::Adapter;
 use super::lanes::Task;
-use super::run::{Run, Stop};
+use super::run::Run;
+use super::stop::Stop;
 use crate::cache::Uses;
 use crate::cause::Cause;
+use crate::observe::Observed;
 use crate::plan::GridPlan;
 use crate::registry::{Chain, stages_of};
 use crate::row::Class;
 pub use gpu::GridLeg;
+pub use own::OwnGrid;
 pub use spec::{GridRun, blockers};
 
 impl Run<'_> {
+    /// The same run, of a scene with a grid whose spec has run.
+    pub(super) fn on_grid(mut self, spec: GridRun) -> Self {
+        self.grid = Some(Arc::new(Observed::new("spec", spec)));
+        self
+    }
+
     /// The spec by itself, then Embree and every adapter.
     pub(super) fn grid(&mut self) -> Result<(), Stop> {
         self.unit(Uses::Nothing, &["grid", "spec"], |run| {
             let spec = run.grid_spec()?;
             run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
-            Ok(())
+            if run.shows_grid() {
+                let shown = pictures::spec(&spec.value, &run.loaded.scene);
+                run.pictures.extend(shown);
+            }
+            run.dump_grid_spec(&spec).map_err(Stop::Dump)
         })?;
         let mut tasks = Vec::new();
         if self.options.embree {
@@ -51,6 +69,15 @@ impl Run<'_> {
         let stated = self.loaded.file.budget.edge.0;
         let budget = (!self.loaded.bare).then_some(stated);
         embree::run(&spec, budget, &mut self.rows);
+        if self.shows_grid() {
+            match pictures::embree(&spec.value, &self.loaded.scene) {
+                Ok(picture) => self.pictures.push(picture),
+                Err(error) => {
+                    let words = error.to_string();
+                    self.rows.fail("trace", "spec", "embree", None, words);
+                }
+            }
+        }
         Ok(())
     }
 
@@ -80,10 +107,32 @@ impl Run<'_> {
         let spec = self.grid_spec()?;
         let capacity = self.loaded.file.grid.unwrap_or_default().capacity;
         let leg = GridLeg::new(adapter, path, &spec, capacity);
-        if let Err(error) = leg.run(&mut self.rows) {
-            self.leg_refused(&label, &error);
+        let more = leg.run(&mut self.rows).and_then(|()| self.beside(&leg));
+        match more {
+            Ok(dumped) => dumped.map_err(Stop::Dump),
+            Err(error) => {
+                self.leg_refused(&label, &error);
+                Ok(())
+            }
         }
-        Ok(())
+    }
+
+    /// Picture and dump of a leg. Where its lists are damaged, which a row says, there is
+    /// neither.
+    fn beside(&mut self, leg: &GridLeg<'_>) -> Result<std::io::Result<()>, GpuError> {
+        if self.shows_grid() {
+            self.pictures.extend(leg.look(&self.loaded.scene)?);
+        }
+        if self.options.dump.is_none() {
+            return Ok(Ok(()));
+        }
+        let own = leg.own()?;
+        Ok(own.map_or(Ok(()), |own| self.dump_grid(&leg.spec.value, &own)))
+    }
+
+    /// Whether pictures are kept, and there is something to see.
+    fn shows_grid(&self) -> bool {
+        self.options.pictures && !self.loaded.scene.triangles.is_empty()
     }
 
     /// What kept a device from a result. All its buffers are sized by the scene: a limit is a

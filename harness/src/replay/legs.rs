@@ -6,8 +6,9 @@ use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
 
 use super::gpu::{Adapter, Broken, From, GpuLeg, Vertices};
-use super::run::{Run, Stop};
+use super::run::Run;
 use super::spec::SpecRun;
+use super::stop::Stop;
 use super::vertex::{self, VertexLeg};
 use super::{Options, end_to_end, hardware, own_vertices, skips};
 use crate::cause::Cause;

@@ -16,7 +16,8 @@ use triptych_gpu::raster::Path;
 
 use super::gpu::Adapter;
 use super::lanes::Task;
-use super::run::{Run, Stop};
+use super::run::Run;
+use super::stop::Stop;
 use crate::cache::Uses;
 use crate::compare::{Judgement, compare};
 use crate::embree::EmbreeError;

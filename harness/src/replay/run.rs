@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use triptych_spec::scene::Size;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::facts::Facts;
@@ -12,6 +13,7 @@ use super::lanes::{Shared, Task};
 use super::rows::Rows;
 use super::rsm::RsmRun;
 use super::spec::SpecRun;
+use super::stop::Stop;
 use super::worst::{Errors, Worst};
 use super::{Options, Outcome, embree, pictures, shown};
 use crate::cache::{Unit, Uses};
@@ -23,20 +25,6 @@ use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{Loaded, expect};
 use crate::sheet::{self, Rays, Sheet};
-
-/// Why a replay ends early.
-pub(super) enum Stop {
-    /// Bad input.
-    Input(String),
-    /// A dump that cannot be written.
-    Dump(std::io::Error),
-}
-
-impl From<std::io::Error> for Stop {
-    fn from(error: std::io::Error) -> Self {
-        Self::Dump(error)
-    }
-}
 
 /// One scene under way.
 pub(super) struct Run<'a> {
@@ -112,7 +100,7 @@ impl<'a> Run<'a> {
         Ok(Outcome {
             name: self.loaded.name.clone(),
             purpose: self.loaded.file.purpose.0.clone(),
-            size: Some(self.loaded.scene.size),
+            size: self.seen_size(),
             rows: self.rows.rows,
             described: self.rows.described,
             worst,
@@ -123,6 +111,18 @@ impl<'a> Run<'a> {
             sheets: shown::once(self.sheets),
             remarks: self.remarks,
         })
+    }
+
+    /// The size of the pictures: the target's, but those of a grid have one of their own.
+    fn seen_size(&self) -> Option<Size> {
+        let first = self.pictures.first();
+        match self.loaded.file.grid {
+            None => Some(self.loaded.scene.size),
+            Some(_) => first.map(|Picture { image, .. }| Size {
+                width: image.width,
+                height: image.height,
+            }),
+        }
     }
 
     /// Triangles to a picture.

@@ -6,8 +6,9 @@ use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::gpu::{From, GpuLeg, GpuSeen};
 use super::pictures;
-use super::run::{Run, Stop};
+use super::run::Run;
 use super::spec::SpecRun;
+use super::stop::Stop;
 use super::worst::Worst;
 use crate::embree::EmbreeScene;
 use crate::observe::{Gpu, Observed};

@@ -32,6 +32,11 @@ pub fn write(
     all: &[Measured],
     wrong: &[Wrong],
 ) -> io::Result<Written> {
+    put(stem, &markdown(run, sweeps, all, wrong), &csv(all))
+}
+
+/// Writes what both hold.
+pub(super) fn put(stem: &Path, markdown: &str, csv: &str) -> io::Result<Written> {
     if let Some(folder) = stem.parent() {
         std::fs::create_dir_all(folder)?;
     }
@@ -44,8 +49,8 @@ pub fn write(
         markdown: ending(".md"),
         csv: ending(".csv"),
     };
-    std::fs::write(&written.csv, csv(all))?;
-    std::fs::write(&written.markdown, markdown(run, sweeps, all, wrong))?;
+    std::fs::write(&written.csv, csv)?;
+    std::fs::write(&written.markdown, markdown)?;
     Ok(written)
 }
 
@@ -89,12 +94,13 @@ pub(super) fn csv(all: &[Measured]) -> String {
     text
 }
 
-fn optional(number: Option<f64>) -> String {
+pub(super) fn optional(number: Option<f64>) -> String {
     number.map_or_else(String::new, |n| format!("{n:e}"))
 }
 
-fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
-    let mut text = format!("# Stability, {}\n\n`{}`\n\n", run.date, run.command);
+/// Title, command, machine and adapters.
+pub(super) fn preamble(title: &str, run: &RunInfo) -> String {
+    let mut text = format!("# {title}, {}\n\n`{}`\n\n", run.date, run.command);
     let facts = run.machine.iter().chain(&run.versions);
     for (name, value) in facts {
         line(
@@ -110,6 +116,11 @@ fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) 
             format_args!("- {}: {}", escaped(&adapter.name), escaped(&facts)),
         );
     }
+    text
+}
+
+fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
+    let mut text = preamble("Stability", run);
     let compared: u64 = all.iter().map(Measured::compared).sum();
     let (steps, seconds) = (all.len(), run.seconds);
     line(
@@ -194,6 +205,6 @@ fn section(sweep: &Sweep, all: &[Measured]) -> String {
     text
 }
 
-fn line(text: &mut String, words: std::fmt::Arguments<'_>) {
+pub(super) fn line(text: &mut String, words: std::fmt::Arguments<'_>) {
     writeln!(text, "{words}").expect("memory takes all");
 }

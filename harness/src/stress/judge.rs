@@ -39,20 +39,25 @@ impl fmt::Display for Wrong {
 
 /// What does not hold of a step. `legs` are all that must have a row, were it to refuse.
 pub fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
+    of_rows(measured.sweep, &measured.step, &measured.rows, legs)
+}
+
+/// What does not hold of a step's rows.
+pub(super) fn of_rows(sweep: &str, step: &str, given: &[Row], legs: &[String]) -> Vec<Wrong> {
     let wrong = |stage: &str, leg: &str, what: String| Wrong {
-        sweep: measured.sweep.to_owned(),
-        step: measured.step.clone(),
+        sweep: sweep.to_owned(),
+        step: step.to_owned(),
         stage: stage.to_owned(),
         leg: leg.to_owned(),
         what,
     };
-    let rows = measured.rows.iter();
+    let rows = given.iter();
     let mut all: Vec<Wrong> = rows
         .filter_map(|row| Some(wrong(&row.stage, &row.b, of_row(row)?)))
         .collect();
     let silent = legs
         .iter()
-        .filter(|leg| !measured.rows.iter().any(|row| row.b == **leg));
+        .filter(|leg| !given.iter().any(|row| row.b == **leg));
     all.extend(silent.map(|leg| wrong("all", leg, "not a word of it".to_owned())));
     all
 }
@@ -91,12 +96,16 @@ pub fn useless(all: &[Measured]) -> Vec<Wrong> {
         let steps = all.iter().filter_map(|m| m.worst(stage));
         steps.map(|(ratio, _)| ratio).fold(0.0, f64::max)
     };
-    let found = bounded().map(|stage| (stage, largest(stage)));
-    let found = found.into_iter().filter(|(_, ratio)| *ratio < USEFUL);
-    let wrong = |(stage, ratio): (Bound, f64)| Wrong {
+    unreached(bounded().map(|stage| (stage.name(), largest(stage))))
+}
+
+/// Bounds of which the largest error over all steps is too small to be of use.
+pub(super) fn unreached<'s>(largest: impl IntoIterator<Item = (&'s str, f64)>) -> Vec<Wrong> {
+    let found = largest.into_iter().filter(|(_, ratio)| *ratio < USEFUL);
+    let wrong = |(stage, ratio): (&str, f64)| Wrong {
         sweep: "all sweeps".to_owned(),
         step: String::new(),
-        stage: stage.name().to_owned(),
+        stage: stage.to_owned(),
         leg: "all legs".to_owned(),
         what: format!("error over bound is at most {ratio}, must reach {USEFUL} somewhere"),
     };

@@ -12,36 +12,36 @@ use crate::vector::{add, scale};
 const SEED: u64 = 4;
 
 /// One number that grows from step to step.
-pub struct Sweep {
+pub struct Sweep<S = Shot> {
     /// What it is called.
     pub name: &'static str,
     /// What the number is.
     pub axis: &'static str,
-    make: fn() -> Vec<Step>,
+    pub(super) make: fn() -> Vec<Step<S>>,
 }
 
 /// One scene of a sweep.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct Step<S = Shot> {
     /// The number as it is written: `2^-100`.
     pub label: String,
     /// The number.
     pub value: f64,
     /// The scene.
-    pub shot: Shot,
+    pub shot: S,
 }
 
-impl Sweep {
+impl<S> Sweep<S> {
     /// Its steps, in order.
-    pub fn steps(&self) -> Vec<Step> {
+    pub fn steps(&self) -> Vec<Step<S>> {
         (self.make)()
     }
 }
 
 /// All of them.
-pub fn sweeps() -> [Sweep; 6] {
+pub fn sweeps() -> Vec<Sweep> {
     let sweep = |name, axis, make| Sweep { name, axis, make };
-    [
+    vec![
         sweep("scale", "size of the scene in units", scale_of_scene),
         sweep(
             "offset",
@@ -63,21 +63,21 @@ pub fn sweeps() -> [Sweep; 6] {
 ///
 /// # Errors
 /// A pattern that selects nothing, with the names that there are.
-pub fn select(patterns: &[String]) -> Result<Vec<Sweep>, String> {
-    let all = sweeps();
+pub fn select<S>(all: Vec<Sweep<S>>, patterns: &[String]) -> Result<Vec<Sweep<S>>, String> {
     for pattern in patterns {
         if !all.iter().any(|s| s.name.contains(pattern.as_str())) {
-            let names = all.map(|s| s.name).join(", ");
+            let names: Vec<&str> = all.iter().map(|s| s.name).collect();
+            let names = names.join(", ");
             return Err(format!(
                 "{pattern}: no sweep is called so; there are: {names}"
             ));
         }
     }
-    let wanted = |s: &Sweep| patterns.is_empty() || patterns.iter().any(|p| s.name.contains(p));
+    let wanted = |s: &Sweep<S>| patterns.is_empty() || patterns.iter().any(|p| s.name.contains(p));
     Ok(all.into_iter().filter(wanted).collect())
 }
 
-fn step(label: String, value: f64, shot: Shot) -> Step {
+pub(super) fn step<S>(label: String, value: f64, shot: S) -> Step<S> {
     Step { label, value, shot }
 }
 
@@ -107,11 +107,11 @@ fn overflowing(size: f64) -> f64 {
     }
 }
 
-fn power(exponent: i32) -> (String, f64) {
+pub(super) fn power(exponent: i32) -> (String, f64) {
     (format!("2^{exponent}"), f64::from(exponent).exp2())
 }
 
-fn scaled(triangles: &[[Vertex; 3]], factor: f64) -> Vec<[Vertex; 3]> {
+pub(super) fn scaled(triangles: &[[Vertex; 3]], factor: f64) -> Vec<[Vertex; 3]> {
     let one = |t: &[Vertex; 3]| t.map(|v| scale(v, factor));
     triangles.iter().map(one).collect()
 }

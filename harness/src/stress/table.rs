@@ -1,9 +1,8 @@
 //! A sweep as a table: a line for each step, and what its notes stand for.
 
-use std::collections::BTreeSet;
-
 use super::measure::{Bound, Measured, bounded};
-use crate::text::{clean, compact, share};
+use super::notes::Notes;
+use crate::text::{compact, share};
 
 /// Columns, and how wide they are on a terminal.
 const COLUMNS: [(&str, usize); 15] = [
@@ -31,8 +30,7 @@ pub const ABOVE: &str = "error over bound, the largest of all legs, by stage, Em
 /// Lines of one sweep, as they come.
 #[derive(Default)]
 pub struct Table {
-    /// Why something was not compared: stage and reason, and the legs.
-    notes: Vec<(String, BTreeSet<String>)>,
+    notes: Notes,
 }
 
 impl Table {
@@ -68,35 +66,23 @@ impl Table {
 
     /// Marks of what a step skipped, each explained by [`Self::notes`].
     fn marks(&mut self, m: &Measured) -> String {
-        let mut marks: Vec<usize> = Vec::new();
-        for (row, reason) in m.skipped() {
-            let note = clean(&format!("{}: {reason}", row.stage)).into_owned();
-            let known = self.notes.iter().position(|(n, _)| *n == note);
-            let number = known.unwrap_or_else(|| {
-                self.notes.push((note, BTreeSet::new()));
-                self.notes.len() - 1
-            });
-            self.notes[number].1.insert(row.b.clone());
-            marks.push(number + 1);
-        }
-        marks.sort_unstable();
-        marks.dedup();
-        runs(&marks)
+        self.notes.marks(m.skipped())
     }
 
     /// What the marks stand for.
     pub fn notes(&self) -> impl Iterator<Item = String> {
-        let numbered = (1..).zip(&self.notes);
-        numbered.map(|(number, (note, legs))| {
-            let legs: Vec<&str> = legs.iter().map(String::as_str).collect();
-            format!("[{number}] {note} ({})", legs.join(", "))
-        })
+        self.notes.lines()
     }
 }
 
 /// A line on a terminal.
 pub fn line(cells: &[impl AsRef<str>]) -> String {
-    let widths = COLUMNS.iter().map(|(_, width)| *width).chain([0]);
+    laid_out(&COLUMNS, cells)
+}
+
+/// The same in columns of these widths, and whatever follows them.
+pub(super) fn laid_out(columns: &[(&str, usize)], cells: &[impl AsRef<str>]) -> String {
+    let widths = columns.iter().map(|(_, width)| *width).chain([0]);
     let cell = |(cell, width): (&_, usize)| match width {
         0 => format!("  {}", AsRef::<str>::as_ref(cell)),
         _ => format!("{:>width$}", AsRef::<str>::as_ref(cell)),
@@ -105,29 +91,13 @@ pub fn line(cells: &[impl AsRef<str>]) -> String {
     line.trim_end().to_owned()
 }
 
-/// `[1-3][7]`: numbers in rising order, neighbours as a range.
-fn runs(numbers: &[usize]) -> String {
-    let mut runs: Vec<[usize; 2]> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some([_, end]) if *end + 1 == number => *end = number,
-            _ => runs.push([number, number]),
-        }
-    }
-    let run = |[start, end]: &[usize; 2]| match start == end {
-        true => format!("[{start}]"),
-        false => format!("[{start}-{end}]"),
-    };
-    runs.iter().map(run).collect()
-}
-
-fn dash() -> String {
+pub(super) fn dash() -> String {
     "–".to_owned()
 }
 
 /// Error over bound with four digits after the point; what is there but would print as
 /// nothing in its own way.
-fn ratio_of(ratio: Option<f64>) -> String {
+pub(super) fn ratio_of(ratio: Option<f64>) -> String {
     match ratio {
         None => dash(),
         Some(0.0) => "0".to_owned(),
@@ -138,12 +108,10 @@ fn ratio_of(ratio: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{ratio_of, runs};
+    use super::ratio_of;
 
     #[test]
-    fn marks_and_ratios_are_short() {
-        assert_eq!(runs(&[1, 2, 3, 7]), "[1-3][7]");
-        assert_eq!(runs(&[]), "");
+    fn ratios_are_short() {
         assert_eq!(ratio_of(None), "–");
         assert_eq!(ratio_of(Some(0.0)), "0");
         assert_eq!(ratio_of(Some(0.25)), "0.2500");

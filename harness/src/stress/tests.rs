@@ -34,7 +34,7 @@ fn votes(ratios: [f64; 2]) -> [Row; 2] {
 }
 
 fn measured(rows: Vec<Row>) -> Measured {
-    let [scale, ..] = sweeps();
+    let scale = sweeps().swap_remove(0);
     let entry = Entry {
         name: "stress/scale/2^0".to_owned(),
         family: FAMILY.to_owned(),
@@ -71,9 +71,9 @@ fn sweep_step(sweep: &Sweep, label: &str) -> Step {
 
 #[test]
 fn what_is_no_sweep_is_named() {
-    let one = select(&["lay".to_owned()]).expect("a part of a name");
+    let one = select(sweeps(), &["lay".to_owned()]).expect("a part of a name");
     assert_eq!(one.iter().map(|s| s.name).collect::<Vec<_>>(), ["layers"]);
-    let error = select(&["no-such".to_owned()]).err();
+    let error = select(sweeps(), &["no-such".to_owned()]).err();
     let must = "no-such: no sweep is called so; there are: scale, offset, sliver, depth, edge-on, \
                 layers";
     assert_eq!(error.as_deref(), Some(must));
@@ -202,7 +202,7 @@ fn both_votes_are_shown() {
 /// A kernel with a defect, on the smallest step: the step does not hold.
 #[test]
 fn a_defect_of_a_kernel_is_wrong() {
-    let [scale, ..] = sweeps();
+    let scale = sweeps().swap_remove(0);
     let step = sweep_step(&scale, "2^0");
     let folder = std::env::temp_dir().join(format!("triptych-stress-{}", std::process::id()));
     let Adapters { mut open, .. } = Adapters::open(&[]);

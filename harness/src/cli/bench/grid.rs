@@ -1,5 +1,7 @@
 //! `triptych bench grid`.
 
+mod stress;
+
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
@@ -16,10 +18,14 @@ use crate::corpus;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
     triptych bench grid                       four real meshes, every adapter\n  \
-    triptych bench grid dragon --adapter nvidia --rays 4194304\n\n\
+    triptych bench grid dragon --adapter nvidia --rays 4194304\n  \
+    triptych bench grid --stress              what holds at the extremes\n\n\
     Exit code 0 whatever is measured: a benchmark judges no machine. 2: nothing could be measured.")]
 #[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; without one four real meshes")))]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Args {
+    #[command(subcommand)]
+    extremes: Option<Extremes>,
     #[command(flatten)]
     scenes: Scenes,
     #[command(flatten)]
@@ -36,7 +42,18 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
+/// What is not measured, but held against bounds.
+#[derive(clap::Subcommand)]
+enum Extremes {
+    /// What holds at the extremes, and by how much
+    #[command(long_flag = "stress")]
+    Stress(stress::Args),
+}
+
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    if let Some(Extremes::Stress(args)) = &args.extremes {
+        return stress::run(args);
+    }
     let corpus = corpus::list(&corpus::root())?;
     let mut remarks = Vec::new();
     let scenes = match args.scenes.if_any(&corpus)? {

@@ -202,6 +202,26 @@ fn answers_are_held_against_the_spec() {
 }
 
 #[test]
+fn what_a_grid_leaves_out_is_seen() {
+    let scene = Scene::new();
+    let nearest = nearest_of_each(&scene.blockers, &scene.rays);
+    assert_eq!(nearest, scene.answers);
+    let judged = |answers: [Option<Closest>; 2]| {
+        let asked = Asked {
+            answers: &answers,
+            ..scene.asked()
+        };
+        exhaustive(asked, &nearest)
+    };
+    let [first, _] = scene.answers;
+    caused(&judged([first, None]), &[]);
+    caused(&judged([None, None]), &[(Cause::Coverage, 1)]);
+    caused(&judged([first, first]), &[(Cause::Coverage, 1)]);
+    let other = first.map(|first| Closest { prim: 1, ..first });
+    caused(&judged([other, None]), &[(Cause::Coverage, 1)]);
+}
+
+#[test]
 fn either_may_come_first_where_bounds_overlap() {
     let mut scene = Scene::new();
     scene.blockers.vertices.copy_within(0..3, 3);

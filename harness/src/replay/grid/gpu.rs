@@ -16,14 +16,14 @@ use crate::row::Class;
 use crate::scene::value::Capacity;
 
 /// Why lists of a device are not followed.
-const DAMAGED: &str = "the device's own lists are damaged: see the stages before";
+pub(super) const DAMAGED: &str = "the device's own lists are damaged: see the stages before";
 
 /// One GPU leg of one scene.
 pub struct GridLeg<'a> {
     adapter: &'a Adapter,
     /// With words or with native integers.
     path: Path,
-    spec: &'a Observed<Spec, GridRun>,
+    pub(super) spec: &'a Observed<Spec, GridRun>,
     /// Entries of the first attempt.
     capacity: Capacity,
 }
@@ -81,7 +81,7 @@ impl<'a> GridLeg<'a> {
         Ok(())
     }
 
-    fn stages(&self) -> Result<Stages<'_>, GpuError> {
+    pub(super) fn stages(&self) -> Result<Stages<'_>, GpuError> {
         let Adapter {
             gpu,
             kernels,
@@ -100,7 +100,7 @@ impl<'a> GridLeg<'a> {
         Stages::new(device)
     }
 
-    fn label(&self) -> String {
+    pub(super) fn label(&self) -> String {
         format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
     }
 
@@ -110,7 +110,7 @@ impl<'a> GridLeg<'a> {
 
     /// How many entries a device's own offsets make room for; `None` if they do not rise, or
     /// lead beyond what boxes touch.
-    fn entries_of(&self, offsets: &[u32]) -> Option<u32> {
+    pub(super) fn entries_of(&self, offsets: &[u32]) -> Option<u32> {
         let most = self.spec.value.box_runs().prims.len();
         let last = offsets.last().copied().unwrap_or(0);
         (offsets.is_sorted() && last as usize <= most).then_some(last)
@@ -218,7 +218,11 @@ impl<'a> GridLeg<'a> {
         Ok(())
     }
 
-    fn traced(&self, stages: &mut Stages<'_>, query: Query) -> Result<Judgement, GpuError> {
+    pub(super) fn traced(
+        &self,
+        stages: &mut Stages<'_>,
+        query: Query,
+    ) -> Result<Judgement, GpuError> {
         let hits = stages.trace(&self.spec.value.rays, query)?;
         let seen = self.seen(hits, stages);
         Ok(compare(self.spec, &seen, |spec, hits| {
@@ -232,32 +236,5 @@ impl<'a> GridLeg<'a> {
                 Query::Closest => judge::closest(asked, hits),
             }
         }))
-    }
-
-    /// Rays through the device's own lists.
-    fn end_to_end(&self, rows: &mut Rows) -> Result<(), GpuError> {
-        let mut stages = self.stages()?;
-        stages.count()?;
-        let offsets = stages.scan()?;
-        let spec = self.spec.map(|_| ());
-        let Some(entries) = self.entries_of(&offsets) else {
-            let (label, reason) = (self.label(), DAMAGED.to_owned());
-            rows.skip("end to end", &spec.label, &label, Class::Decision, reason);
-            return Ok(());
-        };
-        let prims = stages.fill(entries, entries)?;
-        let triangles = self.spec.value.blockers.triangles.len();
-        if prims.iter().any(|prim| *prim as usize >= triangles) {
-            let (label, reason) = (self.label(), DAMAGED.to_owned());
-            rows.skip("end to end", &spec.label, &label, Class::Decision, reason);
-            return Ok(());
-        }
-        let judgement = Judgement {
-            note: "closest hits from its own lists".to_owned(),
-            ..self.traced(&mut stages, Query::Closest)?
-        };
-        let seen = Observed::<Gpu, _>::new(self.label(), ());
-        rows.add("end to end", &spec, &seen, judgement);
-        Ok(())
     }
 }

@@ -120,6 +120,16 @@ impl GridRun {
         })
     }
 
+    /// Adds rays that a scene file cannot draw, after those of all kinds.
+    #[must_use]
+    pub fn asking(mut self, own: Vec<Ray>) -> Self {
+        let (answers, time) = timed(|| trace(&self.grid, &self.blockers, &own));
+        self.times.trace += time;
+        self.rays.extend(own);
+        self.answers.extend(answers);
+        self
+    }
+
     /// The lists.
     pub fn runs(&self) -> Runs<'_> {
         runs(&self.grid)
