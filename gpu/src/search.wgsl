@@ -62,12 +62,7 @@ fn traced(ray: Ray, given: Hit) -> Hit {
             }
             seen = brick_at(march.cell, seen);
             if is_empty(seen) {
-                let last = last_of_brick(march.cell, way.up);
-                let exit = exits(way, last);
-                if ends(ray, hit, soonest(exit)) {
-                    return hit;
-                }
-                march.cell = past_brick(way, march.cell, last, exit);
+                march.cell = over_brick(ray, hit, way, march.cell);
                 if !inside(march.cell) {
                     return hit;
                 }
@@ -98,6 +93,16 @@ fn traced(ray: Ray, given: Hit) -> Hit {
     hit.state = packed(march.cell);
     atomicOr(&unfinished, 1u);
     return hit;
+}
+
+// Past an empty brick; outside of the grid if the search ends in it.
+fn over_brick(ray: Ray, hit: Hit, way: Way, cell: vec3<i32>) -> vec3<i32> {
+    let last = last_of_brick(cell, way.up);
+    let exit = exits(way, last);
+    if ends(ray, hit, soonest(exit)) {
+        return vec3(-1);
+    }
+    return past_brick(way, cell, last, exit);
 }
 
 // How far a list was looked through.

@@ -29,8 +29,10 @@ use crate::row::Class;
 /// A piece of a scene's work. Those of a lane follow each other.
 pub(super) struct Task<'a> {
     lane: usize,
-    work: Box<dyn FnOnce(&mut Run<'a>) -> Result<(), Stop> + Send + 'a>,
+    work: Work<'a>,
 }
+
+type Work<'a> = Box<dyn FnOnce(&mut Run<'a>) -> Result<(), Stop> + Send + 'a>;
 
 impl<'a> Task<'a> {
     /// A piece in the lane of what is asked of Embree and needs no adapter.
