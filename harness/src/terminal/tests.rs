@@ -129,6 +129,23 @@ fn no_line_of_the_table_is_wider_than_the_window() {
     assert!(ruled > 90, "columns fit in nearly every window: {ruled}");
 }
 
+/// A stage with two rows that diverge is one stage, and no later one than itself.
+#[test]
+fn stages_that_diverge_are_told_once() {
+    let diverges = |stage: &str| Row {
+        differ: 1,
+        unexplained: 1,
+        ..row("rsm/a", stage, "spec", "gpu@llvmpipe/compute")
+    };
+    let rows = ["block", "block", "end to end", "end to end"].map(diverges);
+    let text = printed(120, false, &[scene("rsm/a", rows.to_vec())]);
+    let later: Vec<&str> = text
+        .lines()
+        .filter(|l| l.contains("later stages"))
+        .collect();
+    assert_eq!(later, ["     later stages diverge too: end to end"]);
+}
+
 #[test]
 fn a_narrow_window_gets_sentences_and_full_names() {
     let text = printed(36, false, &sample());

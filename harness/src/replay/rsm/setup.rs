@@ -56,7 +56,7 @@ impl Setup {
         let eye = loaded.world.camera;
         let light = rsm.lamp.get_ref().camera()?;
         let lattice = lattice(loaded, rsm.frames.0, [&eye, &light])?;
-        let words = |e: RsmError| e.to_string();
+        let words = |e: RsmError| told(&e, &lattice);
         let lamp = View::new(&light, &lattice, rsm.map.0).map_err(words)?;
         let (strength, reference) = bright(rsm, &light, &lattice);
         let setup = Self {
@@ -98,6 +98,20 @@ impl Setup {
             grid: grid.map_err(|e| e.to_string())?,
             blockers,
         })
+    }
+}
+
+/// What the spec refuses, with the unit of what a scene states in another one.
+fn told(error: &RsmError, lattice: &Lattice) -> String {
+    let lengths = ["the reference distance", "the squared distance", "the edge"];
+    match error {
+        RsmError::Limit { name, .. } if lengths.contains(name) => {
+            format!(
+                "{error}, in steps of the lattice of 2^{} units",
+                lattice.exponent
+            )
+        }
+        _ => error.to_string(),
     }
 }
 

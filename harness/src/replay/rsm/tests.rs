@@ -119,7 +119,11 @@ fn a_reference_beyond_the_lattice_is_halved() {
 #[test]
 fn limits_are_told_by_name() {
     let error = |keys: &str| Setup::new(&scene(keys, SUN)).err().expect("beyond a limit");
-    assert!(error("edge = 1").starts_with("the edge is "));
+    let edge = error("edge = 1");
+    assert!(
+        edge.starts_with("the edge is ") && edge.ends_with(" lattice of 2^-21 units"),
+        "{edge}"
+    );
     assert!(error("clamp = 1e9").starts_with("the squared distance is "));
     // All depths are equal from the largest bias on.
     assert!(Setup::new(&scene("bias = 1e9", SUN)).is_ok());
