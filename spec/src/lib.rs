@@ -12,7 +12,7 @@
 //! | [`raster`] | cover | `gpu/src/raster.wgsl` |
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
-//! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | none yet |
+//! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |
 #![forbid(unsafe_code)]
 
 pub mod abuffer;

@@ -86,7 +86,7 @@ fn the_report_shows_a_grid() {
             assert!(page.contains(words), "{cached}: no {words}");
         }
         assert!(
-            page.contains("<h4>Compare</h4>"),
+            page.contains("<h4>Compare pictures</h4>"),
             "there are no lists to look into"
         );
     }
