@@ -10,6 +10,7 @@
 //#import texel
 //#import lamp
 //#import coarse
+//#import asked
 
 const WORKGROUP: u32 = 64u;
 
@@ -154,31 +155,6 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
 // would otherwise be what the pass waits for.
 var<workgroup> claimed: atomic<u32>;
 var<workgroup> first_place: u32;
-
-// The ray of a pair of a pixel of buffer B and a texel of its kernel.
-struct Asked {
-    ray: Ray,
-    // Whether the texel would light the pixel.
-    counts: bool,
-}
-
-fn asked_by(pair: u32) -> Asked {
-    let none = Asked(Ray(vec3(0.0), 1u, vec3(0.0), pair), false);
-    let kernel = side() * side();
-    let cell = pair / kernel;
-    let pixel = fine(cell % parameters.coarse_width, cell / parameters.coarse_width);
-    let surface = seen[pixel];
-    let place = places[pixel];
-    if surface.face == NOTHING || place.known == 0u {
-        return none;
-    }
-    let number = pair % kernel;
-    let texel = texel_at(place, number % side(), number / side());
-    if texel == NOTHING || !term(surface, towards_viewer(surface.face), texel).counts {
-        return none;
-    }
-    return Asked(Ray(surface.point, 1u, lights[texel].point - surface.point, pair), true);
-}
 
 // One pair: a ray, if the texel would light the pixel.
 @compute @workgroup_size(64)

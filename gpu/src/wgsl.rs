@@ -66,6 +66,7 @@ impl Sources {
     pub fn shipped(native: bool) -> Self {
         let mut files = shipped!(
             "abuffer",
+            "asked",
             "bricks",
             "ceiling",
             "cells",

@@ -50,23 +50,7 @@ pub fn run(
         remarks: Vec::new(),
     };
     let stations = stations(adapters, &mut frames.remarks);
-    let mut all = Vec::new();
-    let entries = match &options.scenes {
-        Some(scenes) => scenes.clone(),
-        None => {
-            all.push(paper()?);
-            named(corpus, &SCENES, &mut frames.remarks)
-        }
-    };
-    for entry in &entries {
-        match load_entry(entry, None) {
-            Ok(loaded) => all.push(loaded),
-            Err(missing @ LoadError::Missing { .. }) => {
-                frames.not(&format!("{}: {missing}", entry.name));
-            }
-            Err(error) => return Err(error.to_string()),
-        }
-    }
+    let all = frames.load(corpus, options)?;
     for loaded in &all {
         let case = match Case::new(loaded) {
             Ok(case) => case,
@@ -111,6 +95,28 @@ pub fn run(
 }
 
 impl Frames {
+    /// The scenes that can be read.
+    fn load(&mut self, corpus: &[Entry], options: &Options) -> Result<Vec<Loaded>, String> {
+        let mut all = Vec::new();
+        let entries = match &options.scenes {
+            Some(scenes) => scenes.clone(),
+            None => {
+                all.push(paper()?);
+                named(corpus, &SCENES, &mut self.remarks)
+            }
+        };
+        for entry in &entries {
+            match load_entry(entry, None) {
+                Ok(loaded) => all.push(loaded),
+                Err(missing @ LoadError::Missing { .. }) => {
+                    self.not(&format!("{}: {missing}", entry.name));
+                }
+                Err(error) => return Err(error.to_string()),
+            }
+        }
+        Ok(all)
+    }
+
     fn not(&mut self, why: &str) {
         self.remarks.push(format!("not measured: {why}"));
     }
