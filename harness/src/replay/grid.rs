@@ -83,16 +83,8 @@ impl Run<'_> {
 
     fn grid_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-        let reason = match path {
-            Path::Fragment => Some("works on triangles, cells and rays, not on fragments"),
-            Path::Native if adapter.native.is_none() => {
-                Some("no 64-bit integers: compute takes its place")
-            }
-            _ => None,
-        };
-        if let Some(reason) = reason {
-            let reason = reason.to_owned();
-            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+        let why = "works on triangles, cells and rays, not on fragments";
+        if self.skips_path(adapter, path, why) {
             return Ok(());
         }
         let plan = GridPlan::new(self.loaded, self.options.skip);
@@ -133,6 +125,22 @@ impl Run<'_> {
     /// Whether pictures are kept, and there is something to see.
     fn shows_grid(&self) -> bool {
         self.options.pictures && !self.loaded.scene.triangles.is_empty()
+    }
+
+    /// Whether a path has nothing of its own to run in a family of compute kernels, which a row
+    /// then says; `why` is said of the fragment path.
+    pub(super) fn skips_path(&mut self, adapter: &Adapter, path: Path, why: &str) -> bool {
+        let reason = match path {
+            Path::Fragment => why,
+            Path::Native if adapter.native.is_none() => {
+                "no 64-bit integers: compute takes its place"
+            }
+            _ => return false,
+        };
+        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let reason = reason.to_owned();
+        self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+        true
     }
 
     /// What kept a device from a result. All its buffers are sized by the scene: a limit is a

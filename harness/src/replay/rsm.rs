@@ -55,16 +55,8 @@ impl Run<'_> {
 
     fn rsm_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-        let reason = match path {
-            Path::Fragment => Some("works on pixels and texels that know their triangle"),
-            Path::Native if adapter.native.is_none() => {
-                Some("no 64-bit integers: compute takes its place")
-            }
-            _ => None,
-        };
-        if let Some(reason) = reason {
-            let reason = reason.to_owned();
-            self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+        let why = "works on pixels and texels that know their triangle";
+        if self.skips_path(adapter, path, why) {
             return Ok(());
         }
         let plan = RsmPlan::new(self.loaded, self.options.skip);

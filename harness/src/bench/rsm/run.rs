@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use triptych_spec::rsm::{Frame, Parameters};
+use triptych_spec::rsm::{Frame, Parameters, RsmError};
 
 use super::super::legs::stations;
 use super::super::{Machine, Progress, Spread, named};
@@ -65,7 +65,10 @@ pub fn run(
         for (number, parameters) in settings.into_iter().enumerate() {
             let large = pairs(&case, parameters) > PAIRS_OF_SPEC;
             if !large {
-                frames.rows.extend(of_spec(&case, parameters));
+                match of_spec(&case, parameters) {
+                    Ok(row) => frames.rows.push(row),
+                    Err(why) => frames.not(&format!("{}: spec: {why}", case.name)),
+                }
             }
             progress.step();
             for station in &stations {
@@ -141,11 +144,11 @@ fn pairs(case: &Case, parameters: Parameters) -> u64 {
 }
 
 /// The spec's picture, drawn once.
-fn of_spec(case: &Case, parameters: Parameters) -> Option<Row> {
+fn of_spec(case: &Case, parameters: Parameters) -> Result<Row, RsmError> {
     let (frame, time) = timed(|| Frame::render(&case.setting(parameters)));
-    let frame = frame.ok()?;
+    let frame = frame?;
     let error = error(&case.reference, &values(&frame.picture));
-    Some(Row {
+    Ok(Row {
         rays: frame.blocked.rays,
         frame: Spread::of([1000.0 * time.as_secs_f64()]),
         ..row(case, parameters, error)
