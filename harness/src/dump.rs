@@ -23,10 +23,20 @@
 //! | `grid/rays` | i32, r × 7 | origin and direction in lattice steps; 1 if it ends at their sum |
 //! | `grid/hit` | u32, r × 2 | row of `grid/triangles` that is met: any, closest; 2^32 - 1 for none |
 //! | `grid/t` | f64, r | when the closest is met, in lengths of the direction; NaN for none |
+//! | `rsm/lattice` | f64, 4 | as `grid/lattice` |
+//! | `rsm-F/triangles` | i32, m × 3 × 3 | of frame F, from 1: corners in lattice steps |
+//! | `rsm-F/seen_prim`, `map_prim` | u32, h × w | what a pixel sees, or a texel of the light's map: row of `triangles`, 2^32 - 1 for none |
+//! | `rsm-F/seen_point`, `map_point` | i32, h × w × 4 | its side, 1 or -1 (0 for none), and the point in lattice steps |
+//! | `rsm-F/place` | i32, h × w × 2 | where that point is in the light's map, x and y; -2^31 for nowhere |
+//! | `rsm-F/key`, `lit` | u32, h × w | its depth key there; 1 where the light reaches it |
+//! | `rsm-F/bits` | u32, h × w × words | of a pixel of buffer B: bit `i` says that texel `i` of its kernel is blocked |
+//! | `rsm-F/intensity`, `direct`, `all`, `blocked`, `blurred` | f32, h × w × 3 | linear: the map's, direct light, buffers A and B, B blurred |
+//! | `rsm-F/image` | | the picture |
 //! | `<stage>/<image>` | f32, h × w × 3 | linear colours; also `.exr` and `.png` |
 
 mod grid;
 mod name;
+mod rsm;
 mod stages;
 
 use std::collections::BTreeMap;
@@ -41,6 +51,7 @@ use triptych_spec::scene::Size;
 use crate::picture;
 pub use grid::{GridArrays, GridHit};
 use name::component;
+pub use rsm::{FrameArrays, FrameShape};
 
 /// The folder of a dump.
 #[derive(Clone, Debug)]

@@ -8,6 +8,7 @@ mod bench;
 mod contributor;
 mod corpus;
 mod drivers;
+mod frames;
 mod grids;
 mod kernel;
 mod legs;

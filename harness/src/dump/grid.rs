@@ -60,9 +60,7 @@ impl LegDump {
         let boundaries = axes.iter().flat_map(|axis| axis.boundaries());
         let boundaries: Vec<i32> = boundaries.copied().collect();
         self.i32("grid", "boundaries", &[boundaries.len()], &boundaries)?;
-        let [x, y, z] = lattice.centre;
-        let step = libm::scalbn(1.0, lattice.exponent);
-        self.f64("grid", "lattice", &[4], &[x, y, z, step])?;
+        self.lattice("grid", lattice)?;
         let rows = (0_u32..).take(blockers.triangles.len());
         let corners: Vec<i32> = rows
             .flat_map(|row| blockers.corners(row).into_iter().flatten())
@@ -90,5 +88,12 @@ impl LegDump {
             .map(|h| h.closest.map_or(f64::NAN, |(_, time)| time));
         let times: Vec<f64> = times.collect();
         self.f64("grid", "t", &[times.len()], &times)
+    }
+
+    /// Writes the point of the world that is 0 on the lattice, and a step's size.
+    pub(super) fn lattice(&self, stage: &str, lattice: &Lattice) -> io::Result<()> {
+        let [x, y, z] = lattice.centre;
+        let step = libm::scalbn(1.0, lattice.exponent);
+        self.f64(stage, "lattice", &[4], &[x, y, z, step])
     }
 }

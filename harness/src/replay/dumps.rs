@@ -1,13 +1,15 @@
 //! What a replay writes for `--dump`.
 
+use triptych_spec::rsm::{Frame, Model};
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::facts;
 use super::gpu::GpuSeen;
 use super::grid::{GridRun, OwnGrid};
+use super::rsm::{RsmRun, Setup, rounded};
 use super::run::Run;
 use super::spec::SpecRun;
-use crate::dump::{GridArrays, GridHit};
+use crate::dump::{FrameArrays, FrameShape, GridArrays, GridHit};
 use crate::observe::{Gpu, Observed, Spec};
 
 impl Run<'_> {
@@ -87,5 +89,60 @@ impl Run<'_> {
             rays: &spec.rays,
             hits,
         })
+    }
+
+    /// The spec's frames, each number rounded once.
+    pub(super) fn dump_rsm_spec(&self, spec: &Observed<Spec, RsmRun>) -> std::io::Result<()> {
+        if self.options.dump.is_none() {
+            return Ok(());
+        }
+        let frames = spec.value.frames.iter();
+        let arrays: Vec<FrameArrays> = frames.map(|frame| arrays_of(&frame.frame)).collect();
+        let models = spec.value.frames.iter().map(|frame| &frame.parts.model);
+        self.dump_frames(&spec.label, &spec.value, models.zip(&arrays))
+    }
+
+    /// A leg's frames.
+    pub(super) fn dump_frames<'a>(
+        &self,
+        label: &str,
+        spec: &RsmRun,
+        frames: impl Iterator<Item = (&'a Model, &'a FrameArrays)>,
+    ) -> std::io::Result<()> {
+        let Some(dump) = &self.options.dump else {
+            return Ok(());
+        };
+        let leg = dump.leg(&self.loaded.name, label);
+        leg.meta(&facts::meta(self.loaded, label, SUBPIXEL_BITS))?;
+        let Setup {
+            lattice,
+            eye,
+            lamp,
+            parameters,
+            ..
+        } = &spec.setup;
+        let shape = FrameShape {
+            lattice,
+            eye: eye.size,
+            map: lamp.view.size,
+            coarse: parameters.coarse(eye.size),
+            words: parameters.words(),
+        };
+        leg.frames(&shape, frames)
+    }
+}
+
+fn arrays_of(frame: &Frame) -> FrameArrays {
+    FrameArrays {
+        seen: frame.seen.surfaces.clone(),
+        lights: frame.rsm.lights(),
+        places: frame.places.clone(),
+        lit: frame.direct.lit.clone(),
+        direct: rounded(&frame.direct.light),
+        all: rounded(&frame.all),
+        bits: frame.blocked.bits.clone(),
+        blocked: rounded(&frame.blocked.light),
+        blurred: rounded(&frame.blurred),
+        picture: rounded(&frame.picture),
     }
 }

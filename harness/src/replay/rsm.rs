@@ -20,6 +20,7 @@ use super::run::Run;
 use super::stop::Stop;
 use crate::cache::Uses;
 use crate::compare::{Judgement, compare};
+use crate::dump::FrameArrays;
 use crate::embree::EmbreeError;
 use crate::observe::{Embree, Observed};
 use crate::plan::RsmPlan;
@@ -27,6 +28,7 @@ use crate::row::Class;
 use embree::{Seen, ask, rmse};
 pub use embree::{reference, values};
 pub use gpu::RsmLeg;
+pub(super) use gpu::rounded;
 pub use setup::{Parts, Setup};
 pub use spec::{RsmFrame, RsmRun, Times, WORK_MAX};
 
@@ -39,7 +41,7 @@ impl Run<'_> {
             if run.options.pictures {
                 run.pictures.extend(pictures::spec(&spec.value));
             }
-            Ok(())
+            run.dump_rsm_spec(&spec).map_err(Stop::Dump)
         })?;
         let mut tasks = Vec::new();
         if self.options.embree {
@@ -69,17 +71,24 @@ impl Run<'_> {
         };
         let first = self.rows.spots.len();
         match leg.run(&mut self.rows) {
-            Ok(made) => self.rsm_keep(&label, &spec.value, &made, first),
+            Ok(made) => {
+                let frames = &spec.value.frames;
+                let models = frames.iter().map(|frame| &frame.parts.model);
+                self.dump_frames(&label, &spec.value, models.zip(&made))
+                    .map_err(Stop::Dump)?;
+                self.rsm_keep(&label, &spec.value, &made, first);
+            }
             Err(error) => self.leg_refused(&label, &error),
         }
         Ok(())
     }
 
     /// Keeps a leg's pictures for the report. Spots from `first` on are its own.
-    fn rsm_keep(&mut self, label: &str, run: &RsmRun, made: &[Vec<[f32; 3]>], first: usize) {
+    fn rsm_keep(&mut self, label: &str, run: &RsmRun, made: &[FrameArrays], first: usize) {
         let pixels: BTreeSet<u32> = self.rows.spots[first..].iter().map(|s| s.pixel).collect();
         for (frame, made) in run.frames.iter().zip(made) {
-            self.errors.note(&pixels, &frame.frame.picture, made);
+            self.errors
+                .note(&pixels, &frame.frame.picture, &made.picture);
         }
         if self.options.pictures {
             self.pictures.extend(pictures::gpu(run, label, made));

@@ -14,6 +14,7 @@ use triptych_spec::rsm::{Colour, Gbuffer, Setting, blur};
 use super::kernel::of_coarse;
 use super::spec::{RsmFrame, RsmRun, composed};
 use crate::compare::rsm as judge;
+use crate::dump::FrameArrays;
 use crate::observe::{Gpu, Observed, Spec};
 use crate::plan::RsmPlan;
 use crate::replay::gpu::Adapter;
@@ -35,11 +36,11 @@ pub struct RsmLeg<'a> {
 
 impl RsmLeg<'_> {
     /// Adds a row for each stage from the spec's input, and one for all of them end to end;
-    /// gives the frames' pictures of the latter.
+    /// gives what it made of the frames in the latter.
     ///
     /// # Errors
     /// Whatever the device reports.
-    pub fn run(&self, rows: &mut Rows) -> Result<Vec<Vec<[f32; 3]>>, GpuError> {
+    pub fn run(&self, rows: &mut Rows) -> Result<Vec<FrameArrays>, GpuError> {
         self.each(rows)?;
         self.end_to_end(rows)
     }
@@ -218,7 +219,7 @@ fn triangles(seen: &Gbuffer) -> Vec<u32> {
 }
 
 /// Inputs of a stage: the spec's numbers, rounded once, and within what `f32` can say.
-fn rounded(colours: &[Colour]) -> Vec<[f32; 3]> {
+pub fn rounded(colours: &[Colour]) -> Vec<[f32; 3]> {
     #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
     let single = |c: &Colour| c.map(|c| c.value.min(f64::from(f32::MAX)) as f32);
     colours.iter().map(single).collect()

@@ -7,6 +7,7 @@
 
 use super::embree::{Seen, rmse, values};
 use super::spec::RsmRun;
+use crate::dump::FrameArrays;
 use crate::picture::{self, Image};
 use crate::replay::pictures;
 use crate::replay::rows::Spot;
@@ -70,10 +71,12 @@ pub(super) fn embree(run: &RsmRun, seen: &[Seen]) -> Vec<Picture> {
     pictures
 }
 
-/// A GPU leg's pictures, end to end.
-pub(super) fn gpu(run: &RsmRun, label: &str, made: &[Vec<[f32; 3]>]) -> Vec<Picture> {
+/// A GPU leg's pictures, end to end, of the frames that it came to draw.
+pub(super) fn gpu(run: &RsmRun, label: &str, made: &[FrameArrays]) -> Vec<Picture> {
     let exposure = exposure(run);
     let mut shown = Vec::new();
+    let made = made.iter().map(|frame| &frame.picture);
+    let made = made.take_while(|picture| !picture.is_empty());
     for (number, (frame, made)) in (1..).zip(run.frames.iter().zip(made)) {
         let wide: Vec<[f64; 3]> = made.iter().map(|pixel| pixel.map(f64::from)).collect();
         let title = title_of(label, number);

@@ -6,16 +6,17 @@
 //! pixel goes unjudged.
 
 use triptych_gpu::error::GpuError;
-use triptych_gpu::rsm::{Colours, Stages};
+use triptych_gpu::rsm::Stages;
 use triptych_spec::rsm::{
-    Blocked, Coarse, Colour, DARK, Gbuffer, Light, Place, Setting, Surface, block, blur, compose,
-    direct, gather,
+    Blocked, Coarse, Colour, DARK, Gbuffer, Light, Setting, Surface, block, blur, compose, direct,
+    gather,
 };
 
 use super::tally::Tally;
 use super::{RsmFrame, RsmLeg, of_coarse, pixels, triangles, word};
 use crate::compare::Judgement;
 use crate::compare::rsm as judge;
+use crate::dump::FrameArrays;
 use crate::replay::rows::Rows;
 use crate::row::Class;
 
@@ -23,69 +24,62 @@ use crate::row::Class;
 const DAMAGED: &str =
     "the device's own surfaces, lights or places are wrong: see the stages before";
 
-/// What a device made before it came to light: points, texels as lights, places.
-struct Given {
-    seen: Vec<Option<Surface>>,
-    lights: Vec<Option<Light>>,
-    places: Vec<Option<Place>>,
-}
-
-/// What it made of that.
-struct Made {
-    lit: Vec<bool>,
-    bits: Vec<u32>,
-    rays: u64,
-    picture: Colours,
-}
-
 impl RsmLeg<'_> {
     /// Adds rows for all stages from the device's own results: which pixels are lit, which
-    /// texels are blocked, and the picture. Gives its pictures.
-    pub(super) fn end_to_end(&self, rows: &mut Rows) -> Result<Vec<Colours>, GpuError> {
+    /// texels are blocked, and the picture. Gives all of them, frame by frame, as far as they
+    /// came.
+    pub(super) fn end_to_end(&self, rows: &mut Rows) -> Result<Vec<FrameArrays>, GpuError> {
         let (stage, label) = ("end to end", self.label());
         let mut tally = Tally::default();
-        let mut pictures = Vec::new();
+        let mut frames = Vec::new();
         for frame in &self.spec.value.frames {
             let mut stages = self.stages(frame)?;
-            let Some(given) = self.given(frame, &mut stages)? else {
+            let mut own = FrameArrays::default();
+            let sound = self.first(frame, &mut stages, &mut own)?;
+            if !sound {
                 let reason = DAMAGED.to_owned();
                 rows.skip(stage, &self.spec.label, &label, Class::Interval, reason);
-                return Ok(Vec::new());
-            };
-            let made = self.made_of(frame, &mut stages, &given)?;
-            let (lit, blocked, picture) = self.expected(frame, &given);
-            let judged = self.beside(lit, &made.lit, |a, b| judge::lit(a, b));
+                frames.push(own);
+                return Ok(frames);
+            }
+            let rays = self.rest(frame, &mut stages, &mut own)?;
+            let (lit, blocked, picture) = self.expected(frame, &own);
+            let judged = self.beside(lit, &own.lit, |a, b| judge::lit(a, b));
             tally.part(stage, judged);
             let setting = self.spec.value.setting(frame);
             let place = |pixel| word(of_coarse(&setting, &frame.frame, pixel));
-            let judged = self.beside(blocked, &made, |a, made| {
-                judge::blocked(a, (&made.bits, made.rays), place)
+            let judged = self.beside(blocked, (&own.bits, rays), |a, (bits, rays)| {
+                judge::blocked(a, (bits, *rays), place)
             });
             tally.part(stage, judged);
-            let judged = self.beside(picture, &made.picture, |a, b| Judgement {
+            let judged = self.beside(picture, &own.picture, |a, b| Judgement {
                 note: "from the device's own surfaces, lights and places".to_owned(),
                 ..pixels(a, b)
             });
             tally.part(stage, judged);
-            pictures.push(made.picture);
+            frames.push(own);
         }
         tally.rows(&self.spec.label, &label, rows);
-        Ok(pictures)
+        Ok(frames)
     }
 
-    /// What the device sees by itself; `None` if that is not what it may see.
-    fn given(&self, of: &RsmFrame, stages: &mut Stages<'_>) -> Result<Option<Given>, GpuError> {
+    /// What the device sees by itself; `false` if that is not what it may see, and then
+    /// nothing is made of it.
+    fn first(
+        &self,
+        of: &RsmFrame,
+        stages: &mut Stages<'_>,
+        own: &mut FrameArrays,
+    ) -> Result<bool, GpuError> {
         let frame = &of.frame;
-        let seen = stages.gbuffer(&triangles(&frame.seen))?;
-        if judge::surfaces(&frame.seen, &seen).differ() > 0 {
-            return Ok(None);
+        own.seen = stages.gbuffer(&triangles(&frame.seen))?;
+        if judge::surfaces(&frame.seen, &own.seen).differ() > 0 {
+            return Ok(false);
         }
         if !self.runs("rsm") {
-            return Ok(Some(Given {
-                lights: frame.rsm.lights(),
-                places: vec![None; seen.len()],
-                seen,
-            }));
+            own.lights = frame.rsm.lights();
+            own.places = vec![None; own.seen.len()];
+            return Ok(true);
         }
         let (texels, intensities) = stages.rsm(&triangles(&frame.rsm.seen))?;
         let near = judge::surfaces(&frame.rsm.seen, &texels);
@@ -94,52 +88,44 @@ impl RsmLeg<'_> {
             .iter()
             .flatten()
             .all(|c| c.is_finite() && *c >= 0.0);
-        let places = stages.place(&seen)?;
+        own.places = stages.place(&own.seen)?;
         let light = &self.spec.value.setup.lamp.view;
-        let own = Gbuffer {
-            surfaces: seen,
+        let seen = Gbuffer {
+            surfaces: own.seen.clone(),
             ..frame.seen.clone()
         };
-        let expected = triptych_spec::rsm::place(light, &own);
-        let placed = judge::places(light, &own.surfaces, &expected, &places);
+        let expected = triptych_spec::rsm::place(light, &seen);
+        let placed = judge::places(light, &own.seen, &expected, &own.places);
         let wrong = [near, bright, placed]
             .iter()
             .any(|judged| judged.differ() > 0);
-        if wrong || !finite {
-            return Ok(None);
-        }
         let light = |(surface, intensity): (Option<Surface>, [f32; 3])| {
             surface.map(|surface| Light { surface, intensity })
         };
-        Ok(Some(Given {
-            seen: own.surfaces,
-            lights: texels.into_iter().zip(intensities).map(light).collect(),
-            places,
-        }))
+        own.lights = texels.into_iter().zip(intensities).map(light).collect();
+        Ok(!wrong && finite)
     }
 
-    fn made_of(
+    /// What it makes of that; gives how many rays it asked for.
+    fn rest(
         &self,
         of: &RsmFrame,
         stages: &mut Stages<'_>,
-        given: &Given,
-    ) -> Result<Made, GpuError> {
+        own: &mut FrameArrays,
+    ) -> Result<u64, GpuError> {
         let frame = &of.frame;
-        let Given {
-            seen,
-            lights,
-            places,
-        } = given;
+        let (seen, places, lights) = (&own.seen, &own.places, &own.lights);
         let dark = |pixels: usize| vec![[0.0; 3]; pixels];
-        let (lit, direct) = match self.runs("direct") {
+        (own.lit, own.direct) = match self.runs("direct") {
             true => stages.direct(seen, places, &frame.rsm.seen.keys)?,
             false => (vec![false; seen.len()], dark(seen.len())),
         };
-        let all = match self.runs("gather") {
+        own.all = match self.runs("gather") {
             true => stages.gather(seen, places, lights)?,
             false => dark(seen.len()),
         };
-        let (bits, rays, light) = match self.runs("block") {
+        let rays;
+        (own.bits, rays, own.blocked) = match self.runs("block") {
             true => {
                 let found = stages.block(seen, places, lights)?;
                 (found.bits, found.rays, found.light)
@@ -149,20 +135,16 @@ impl RsmLeg<'_> {
                 (bits.clone(), 0, dark(light.len()))
             }
         };
-        let blurred = match self.runs("blur") {
-            true => stages.blur(seen, &light)?,
-            false => light,
+        own.blurred = match self.runs("blur") {
+            true => stages.blur(seen, &own.blocked)?,
+            false => own.blocked.clone(),
         };
-        Ok(Made {
-            picture: stages.compose(seen, [&direct, &all], &blurred)?,
-            lit,
-            bits,
-            rays,
-        })
+        own.picture = stages.compose(seen, [&own.direct, &own.all], &own.blurred)?;
+        Ok(rays)
     }
 
     /// The spec from the same surfaces, lights and places.
-    fn expected(&self, of: &RsmFrame, given: &Given) -> (Vec<bool>, Blocked, Vec<Colour>) {
+    fn expected(&self, of: &RsmFrame, own: &FrameArrays) -> (Vec<bool>, Blocked, Vec<Colour>) {
         let setting = self.spec.value.setting(of);
         let Setting {
             model,
@@ -172,10 +154,10 @@ impl RsmLeg<'_> {
             ..
         } = &setting;
         let seen = Gbuffer {
-            surfaces: given.seen.clone(),
+            surfaces: own.seen.clone(),
             ..of.frame.seen.clone()
         };
-        let Given { lights, places, .. } = given;
+        let FrameArrays { lights, places, .. } = own;
         let (keys, size) = (&of.frame.rsm.seen.keys, lamp.view.size);
         let direct = direct(model, &seen, places, lamp, keys, parameters);
         let all = gather(model, &seen, places, lights, size, parameters);
