@@ -98,7 +98,7 @@ impl Judgement {
     }
 
     /// The judgements of the parts of one thing as one. Parts are judged alike, so
-    /// the first one's class and unit are those of all.
+    /// the first one's class and unit are those of all; of budgets the smallest holds.
     pub fn sum(parts: impl IntoIterator<Item = Self>) -> Self {
         let mut parts = parts.into_iter();
         let Some(mut total) = parts.next() else {
@@ -112,6 +112,11 @@ impl Judgement {
                 *total.causes.entry(cause).or_default() += count;
             }
             let larger = |a: Option<f64>, b| a.into_iter().chain(b).reduce(f64::max);
+            let budgets = total
+                .admitted_budget
+                .into_iter()
+                .chain(part.admitted_budget);
+            total.admitted_budget = budgets.reduce(f64::min);
             total.error = larger(total.error, part.error);
             total.error_over_bound = larger(total.error_over_bound, part.error_over_bound);
             total.marks.extend(part.marks);

@@ -212,3 +212,38 @@ size = [8, 8]
 [[mesh]]
 generate.stack = { layers = 2, size = [4, 4], spacing = 1 }
 "#;
+
+/// What only a device's own run has, its cells among it, is judged there.
+#[test]
+fn what_is_wrong_in_a_legs_own_run_diverges() {
+    let place = Place::new("rsm-own");
+    place.write("own/wall.toml", WALL);
+    let idle = "@compute @workgroup_size(64) fn";
+    let kernels = format!("{idle} count() {{}}\n{idle} count_chunks() {{}}\n");
+    place.write("count.wgsl", &kernels);
+    let command = ["replay", "own/wall.toml", "--leg", "gpu"];
+    place.run(&[&command[..], &ON[..]].concat()).expect(0);
+    let kernel = ["--kernel", "count=count.wgsl"];
+    let ran = place.run(&[&command[..], &ON[..], &kernel[..]].concat());
+    let stdout = ran.expect(1).stdout;
+    assert!(
+        stdout.contains(", end to end: 27 of 28 offsets differ; corrupt-link 27"),
+        "{stdout}"
+    );
+}
+
+/// A lamp so bright that `f32` may not hold it is nothing to agree on.
+#[test]
+fn light_beyond_f32_is_no_agreement() {
+    let place = Place::new("rsm-bright");
+    let told = "strength = [1e6, 1e6, 1e6]\nreference = 1e12";
+    let bright = WALL.replace("strength = [6, 6, 6]", told);
+    // A spot light, which alone has a reference distance.
+    let bright = bright.replace("height = 1.5", "fov = 30");
+    place.write("own/bright.toml", &bright);
+    let command = ["replay", "own/bright.toml", "--leg", "gpu"];
+    let ran = place.run(&[&command[..], &ON[..]].concat()).expect(1);
+    let said = ran.stdout;
+    assert!(said.contains("intensities may be beyond f32"), "{said}");
+    assert!(said.contains("no finite number"), "{said}");
+}

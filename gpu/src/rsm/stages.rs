@@ -61,6 +61,23 @@ impl<'g> Stages<'g> {
         })
     }
 
+    /// The blockers' cells, built by the device: where each list starts, and what the lists hold
+    /// if the host finds the former `sound`. Stage `block` goes on from them. Empty without
+    /// blockers.
+    pub fn cells(&mut self, sound: impl FnOnce(&[u32]) -> bool) -> Result<[Vec<u32>; 2], GpuError> {
+        let Some(grid) = &mut self.grid else {
+            return Ok([Vec::new(), Vec::new()]);
+        };
+        grid.count()?;
+        let offsets = grid.scan()?;
+        let entries = offsets.last().copied().unwrap_or(0);
+        let prims = match sound(&offsets) {
+            true => grid.fill(entries, entries)?,
+            false => Vec::new(),
+        };
+        Ok([offsets, prims])
+    }
+
     /// Stage `gbuffer`: what each pixel sees of a triangle of the model, or of
     /// [`triptych_spec::abuffer::NOTHING`].
     pub fn gbuffer(&mut self, triangles: &[u32]) -> Result<Surfaces, GpuError> {

@@ -16,7 +16,7 @@ use crate::row::Class;
 pub use blocked::blocked;
 pub use colours::{colours, lit};
 pub use places::places;
-pub use surfaces::surfaces;
+pub use surfaces::{surfaces, visible};
 
 /// A comparison of two lists of as many items, `expected` of them; another number is a
 /// difference by itself.

@@ -117,6 +117,11 @@ pub fn counts_within(least: &[u32], seen: &[u32], most: Runs<'_>) -> Judgement {
         compared: least.len() as u64,
         ..Judgement::new(Class::Decision, "cells")
     };
+    if seen.len() != least.len() {
+        judgement.differs(Cause::ReferenceMissing, None, || {
+            format!("{} cells, must be {}", seen.len(), least.len())
+        });
+    }
     for (cell, (low, seen)) in least.iter().zip(seen).enumerate() {
         let high = most.list(cell).len() as u64;
         if !(u64::from(*low)..=high).contains(&u64::from(*seen)) {

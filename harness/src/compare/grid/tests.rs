@@ -63,6 +63,7 @@ fn lists_in_between_are_admitted() {
     let counted = |seen: &[u32]| counts_within(&[2, 0, 3], seen, most);
     assert_eq!(counted(&[3, 1, 3]).admitted, 2);
     caused(&counted(&[1, 0, 4]), &[(Cause::Coverage, 2)]);
+    caused(&counted(&[3, 1]), &[(Cause::ReferenceMissing, 1)]);
 }
 
 #[test]

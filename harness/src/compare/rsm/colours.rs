@@ -22,7 +22,8 @@ pub fn lit(spec: &[bool], seen: &[bool]) -> Judgement {
     judgement
 }
 
-/// Colours within their bounds. `place` is where an item stands in a picture, if it does.
+/// Colours within their bounds. `place` is where an item stands in a picture, if it does. What
+/// `f32` may not hold has no bound: it is counted, not judged, and a row has none of it to pass.
 pub fn colours(
     unit: &'static str,
     spec: &[Colour],
@@ -32,6 +33,10 @@ pub fn colours(
     let mut judgement = listed(Class::Interval, unit, spec.len(), seen.len());
     let (mut error, mut ratio) = (0.0_f64, 0.0_f64);
     for (at, (spec, seen)) in spec.iter().zip(seen).enumerate() {
+        if spec.iter().any(|channel| !channel.bound.is_finite()) {
+            judgement.admitted += 1;
+            continue;
+        }
         let wrong = (0..3).find(|i| !spec[*i].admits(f64::from(seen[*i])));
         if let Some(channel) = wrong {
             judgement.differs(Cause::Interval, place(at), || {
@@ -46,13 +51,16 @@ pub fn colours(
         }
         for (must, is) in spec.iter().zip(seen) {
             let off = (f64::from(*is) - must.value).abs();
-            // What has no bound is no error either.
-            if off > 0.0 && must.bound.is_finite() {
+            if off > 0.0 {
                 (error, ratio) = (error.max(off), ratio.max(off / must.bound));
             }
         }
     }
     judgement.error = Some(error);
     judgement.error_over_bound = Some(ratio);
+    if judgement.admitted > 0 {
+        judgement.admitted_budget = Some(0.0);
+        judgement.note = format!("{} {unit} may be beyond f32", judgement.admitted);
+    }
     judgement
 }

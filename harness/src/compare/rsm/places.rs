@@ -10,7 +10,9 @@ use crate::compare::Judgement;
 use crate::row::Class;
 
 /// A decision: a texel is the spec's, or the floor of a number within the bound of [`project`],
-/// which is counted as admitted. A key is within the bound, too; its errors are in keys.
+/// which is counted as admitted. A key is within the bound, too; its errors are in keys. Where
+/// even the sign of `w` is within its bound, a point may lie anywhere, or nowhere: that is
+/// counted as admitted, too.
 pub fn places(
     light: &View,
     surfaces: &[Option<Surface>],
@@ -30,6 +32,10 @@ pub fn places(
             });
             continue;
         };
+        if bound.is_infinite() {
+            judgement.admitted += 1;
+            continue;
+        }
         judgement.admitted += u64::from(spec.map(|p| p.texel) != seen.map(|p| p.texel));
         if let (Some(spec), Some(seen)) = (spec, seen) {
             let off = f64::from(spec.key.abs_diff(seen.key));

@@ -1,11 +1,37 @@
-//! Stages `gbuffer` and `rsm`: which point of which triangle is seen.
+//! Which triangle is seen, and, of stages `gbuffer` and `rsm`, which point of it.
 
+use triptych_spec::abuffer::NOTHING;
 use triptych_spec::rsm::{Gbuffer, Surface};
 
 use super::{listed, number};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::row::Class;
+
+/// Every pixel of a view sees the same triangle at the same key. Another triangle at the same key
+/// is a broken tie, the same one at another key a wrong key.
+pub fn visible(unit: &'static str, spec: &Gbuffer, keys: &[u32], triangles: &[u32]) -> Judgement {
+    let lengths = keys.len().min(triangles.len());
+    let mut judgement = listed(Class::Exact, unit, spec.keys.len(), lengths);
+    let seen = keys.iter().zip(triangles);
+    let expected = spec.keys.iter().zip(&spec.surfaces);
+    for (at, ((key, surface), (seen_key, seen))) in expected.zip(seen).enumerate() {
+        let triangle = surface.map_or(NOTHING, |surface| surface.triangle);
+        let cause = match (key == seen_key, triangle == *seen) {
+            (true, true) => continue,
+            (true, false) => Cause::TieOrder,
+            (false, true) => Cause::DepthKey,
+            (false, false) => Cause::Coverage,
+        };
+        judgement.differs(cause, None, || {
+            format!(
+                "number {at} of the {unit} sees triangle {seen} at key {seen_key}, must see \
+                 {triangle} at {key}"
+            )
+        });
+    }
+    judgement
+}
 
 /// Triangle and side are exact; a point is no farther along an axis from the spec's than that
 /// lets it stray. Errors are in steps of the lattice.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use triptych_spec::abuffer::NOTHING;
 use triptych_spec::rsm::{Frame, Gbuffer, PLACE_MAX, Place, Surface, place};
 
 use super::*;
@@ -102,6 +103,51 @@ fn surfaces_differ_by_triangle_side_or_distance() {
     caught(&surfaces(seen, &other), Cause::Coverage, Some(pixel));
     let short = &seen.surfaces[..seen.surfaces.len() - 1];
     caught(&surfaces(seen, short), Cause::ReferenceMissing, None);
+}
+
+#[test]
+fn what_is_visible_is_exact() {
+    let run = run();
+    let seen = &frame(&run).rsm.seen;
+    let row = |surface: &Option<Surface>| surface.map_or(NOTHING, |surface| surface.triangle);
+    let triangles: Vec<u32> = seen.surfaces.iter().map(row).collect();
+    let judged = |keys: &[u32], triangles: &[u32]| visible("texels", seen, keys, triangles);
+    let same = judged(&seen.keys, &triangles);
+    assert!(passes(&same) && same.compared == 64, "{same:?}");
+    let [mut keys, mut rows] = [seen.keys.clone(), triangles.clone()];
+    let texel = triangles.iter().position(|row| *row != NOTHING);
+    let texel = texel.expect("one sees something");
+    keys[texel] -= 1;
+    caught(&judged(&keys, &triangles), Cause::DepthKey, None);
+    rows[texel] += 1;
+    caught(&judged(&seen.keys, &rows), Cause::TieOrder, None);
+    caught(&judged(&keys, &rows), Cause::Coverage, None);
+    let short = (&seen.keys[1..], &triangles[1..]);
+    assert!(judged(&seen.keys, short.1).causes[&Cause::ReferenceMissing] == 1);
+    assert!(judged(short.0, &triangles).causes[&Cause::ReferenceMissing] == 1);
+}
+
+/// What `f32` may not hold is not judged, and no row that has any of it passes.
+#[test]
+fn a_colour_without_bound_is_not_judged() {
+    let run = run();
+    let spec = frame(&run).direct.light.clone();
+    let seen = vec![[0.0; 3]; spec.len()];
+    let unbounded = |items: usize| {
+        let mut spec = spec.clone();
+        for colour in &mut spec[..items] {
+            colour[1].bound = f64::INFINITY;
+        }
+        colours("pixels", &spec, &seen, |_| None)
+    };
+    assert_eq!(unbounded(0).admitted_budget, None);
+    let some = unbounded(5);
+    assert_eq!((some.admitted, some.admitted_budget), (5, Some(0.0)));
+    let all = unbounded(spec.len());
+    assert_eq!((all.differ(), all.admitted), (0, all.compared));
+    // So it is where one frame of several has some.
+    let total = Judgement::sum([unbounded(0), some]);
+    assert_eq!((total.admitted, total.admitted_budget), (5, Some(0.0)));
 }
 
 #[test]

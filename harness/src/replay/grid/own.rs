@@ -3,27 +3,35 @@
 use triptych_gpu::error::GpuError;
 use triptych_gpu::grid::{Hit, Stages};
 use triptych_spec::abuffer::NOTHING;
+use triptych_spec::grid::Membership;
 use triptych_spec::grid::trace::Query;
 use triptych_spec::scene::Scene;
 
-use super::gpu::{DAMAGED, GridLeg};
+use super::gpu::GridLeg;
 use super::pictures;
+use super::spec::GridRun;
 use super::view::View;
-use crate::compare::Judgement;
+use crate::compare::grid::{self as judge, Runs};
+use crate::compare::{Judgement, compare};
 use crate::dump::GridHit;
 use crate::observe::{Gpu, Observed};
 use crate::replay::rows::Rows;
 use crate::report::Picture;
-use crate::row::Class;
 
 impl GridLeg<'_> {
-    /// Rays through the device's own lists.
+    /// The device's own lists, and rays through them. Lists that no search may follow are told
+    /// by their own row.
     pub(super) fn end_to_end(&self, rows: &mut Rows) -> Result<(), GpuError> {
         let mut stages = self.stages()?;
         let spec = self.spec.map(|_| ());
-        if self.own_lists(&mut stages)?.is_none() {
-            let (label, reason) = (self.label(), DAMAGED.to_owned());
-            rows.skip("end to end", &spec.label, &label, Class::Decision, reason);
+        let [offsets, prims] = self.built(&mut stages)?;
+        let sound = self.is_sound(&offsets, &prims);
+        let lists = Observed::<Gpu, _>::new(self.label(), (offsets, prims));
+        let judgement = compare(self.spec, &lists, |spec, (offsets, prims)| {
+            lists_of(spec, Runs { offsets, prims })
+        });
+        rows.add("end to end", &spec, &lists, judgement);
+        if !sound {
             return Ok(());
         }
         let judgement = Judgement {
@@ -35,17 +43,29 @@ impl GridLeg<'_> {
         Ok(())
     }
 
-    /// The device's own offsets and entries; `None` if no search may follow them.
-    fn own_lists(&self, stages: &mut Stages<'_>) -> Result<Option<[Vec<u32>; 2]>, GpuError> {
+    /// The device's own offsets, and its entries unless the offsets lead nowhere.
+    fn built(&self, stages: &mut Stages<'_>) -> Result<[Vec<u32>; 2], GpuError> {
         stages.count()?;
         let offsets = stages.scan()?;
-        let Some(entries) = self.entries_of(&offsets) else {
-            return Ok(None);
+        let prims = match self.entries_of(&offsets) {
+            Some(entries) => stages.fill(entries, entries)?,
+            None => Vec::new(),
         };
-        let prims = stages.fill(entries, entries)?;
+        Ok([offsets, prims])
+    }
+
+    /// Whether a search may follow lists.
+    fn is_sound(&self, offsets: &[u32], prims: &[u32]) -> bool {
         let triangles = self.spec.value.blockers.triangles.len();
         let known = prims.iter().all(|prim| (*prim as usize) < triangles);
-        Ok(known.then_some([offsets, prims]))
+        known && self.entries_of(offsets).is_some()
+    }
+
+    /// The device's own offsets and entries; `None` if no search may follow them.
+    fn own_lists(&self, stages: &mut Stages<'_>) -> Result<Option<[Vec<u32>; 2]>, GpuError> {
+        let [offsets, prims] = self.built(stages)?;
+        let sound = self.is_sound(&offsets, &prims);
+        Ok(sound.then_some([offsets, prims]))
     }
 
     /// What the device sees through its own lists, for the report; `None` if they are damaged.
@@ -99,6 +119,20 @@ pub struct OwnGrid {
     pub prims: Vec<u32>,
     /// What its rays meet.
     pub hits: Vec<GridHit>,
+}
+
+/// A device's own lists: the spec's, or between them and those of boxes where a kernel may prove
+/// less than the spec.
+fn lists_of(spec: &GridRun, seen: Runs<'_>) -> Judgement {
+    let least = spec.runs();
+    if spec.membership == Membership::Overlap {
+        return judge::within(least, seen, spec.box_runs());
+    }
+    let offsets = judge::offsets(least.offsets, seen.offsets);
+    match offsets.differ() {
+        0 => judge::entries(least, seen.prims),
+        _ => offsets,
+    }
 }
 
 /// The triangle that a hit names.

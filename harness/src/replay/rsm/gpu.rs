@@ -1,6 +1,7 @@
-//! A GPU leg of a frame of indirect light: every stage from the spec's input, then all from its
-//! own.
+//! A GPU leg of a frame of indirect light: every stage from the spec's input, then all of the
+//! device's own.
 
+mod first;
 mod own;
 mod tally;
 

@@ -1,123 +1,111 @@
 //! All stages, each from the device's own results.
 //!
-//! The device's points, places and intensities may differ from the spec's within bounds, and
-//! what is decided on them may differ too. So the picture is held against that of the spec from
-//! the device's own surfaces, places and lights, whose bounds run on from stage to stage: no
-//! pixel goes unjudged.
+//! It starts from snapped triangles and from the blockers' corners. Which triangles eye and lamp
+//! see, and the blockers' cells, are exact. The device's points, places and intensities may
+//! differ from the spec's within bounds, and what is decided on them may differ too. So the
+//! picture is held against that of the spec from the device's own surfaces, places and lights,
+//! whose bounds run on from stage to stage: no pixel goes unjudged.
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::rsm::Stages;
 use triptych_spec::rsm::{
-    Blocked, Coarse, Colour, DARK, Gbuffer, Light, Setting, Surface, block, blur, compose, direct,
-    gather,
+    Blocked, Coarse, Colour, DARK, Gbuffer, Setting, block, blur, compose, direct, gather,
 };
 
 use super::tally::Tally;
-use super::{RsmFrame, RsmLeg, of_coarse, pixels, triangles, word};
-use crate::compare::Judgement;
+use super::{RsmFrame, RsmLeg, of_coarse, pixels, word};
 use crate::compare::rsm as judge;
 use crate::dump::FrameArrays;
 use crate::replay::rows::Rows;
 use crate::row::Class;
 
-/// Why a device's own results are not followed.
-const DAMAGED: &str =
-    "the device's own surfaces, lights or places are wrong: see the stages before";
+/// What the rows are about.
+pub(super) const STAGE: &str = "end to end";
+
+/// Why intensities are not followed.
+const BEYOND: &str = "an intensity of the device is no finite number: nothing bounds what follows";
+
+/// How far a frame came.
+enum End {
+    /// To its picture.
+    Picture,
+    /// To something wrong, which its row tells.
+    Wrong,
+    /// To a light as bright as `f32` cannot say.
+    Beyond,
+}
 
 impl RsmLeg<'_> {
-    /// Adds rows for all stages from the device's own results: which pixels are lit, which
-    /// texels are blocked, and the picture. Gives all of them, frame by frame, as far as they
-    /// came.
+    /// Adds rows for all stages from the device's own results: what eye and lamp see, the
+    /// blockers' cells, which pixels are lit, which texels are blocked, and the picture. Gives
+    /// all of them, frame by frame, as far as they came.
     pub(super) fn end_to_end(&self, rows: &mut Rows) -> Result<Vec<FrameArrays>, GpuError> {
-        let (stage, label) = ("end to end", self.label());
+        let label = self.label();
         let mut tally = Tally::default();
         let mut frames = Vec::new();
+        let mut end = End::Picture;
         for frame in &self.spec.value.frames {
-            let mut stages = self.stages(frame)?;
             let mut own = FrameArrays::default();
-            let sound = self.first(frame, &mut stages, &mut own)?;
-            if !sound {
-                let reason = DAMAGED.to_owned();
-                rows.skip(stage, &self.spec.label, &label, Class::Interval, reason);
-                frames.push(own);
-                return Ok(frames);
-            }
-            let rays = self.rest(frame, &mut stages, &mut own)?;
-            let (lit, blocked, picture) = self.expected(frame, &own);
-            let judged = self.beside(lit, &own.lit, |a, b| judge::lit(a, b));
-            tally.part(stage, judged);
-            let setting = self.spec.value.setting(frame);
-            let place = |pixel| word(of_coarse(&setting, &frame.frame, pixel));
-            let judged = self.beside(blocked, (&own.bits, rays), |a, (bits, rays)| {
-                judge::blocked(a, (bits, *rays), place)
-            });
-            tally.part(stage, judged);
-            let judged = self.beside(picture, &own.picture, |a, b| Judgement {
-                note: "from the device's own surfaces, lights and places".to_owned(),
-                ..pixels(a, b)
-            });
-            tally.part(stage, judged);
+            end = self.whole(frame, &mut own, &mut tally)?;
             frames.push(own);
+            if !matches!(end, End::Picture) {
+                break;
+            }
         }
         tally.rows(&self.spec.label, &label, rows);
+        if matches!(end, End::Beyond) {
+            let reason = BEYOND.to_owned();
+            rows.skip(STAGE, &self.spec.label, &label, Class::Interval, reason);
+        }
         Ok(frames)
     }
 
-    /// What the device sees by itself; `false` if that is not what it may see, and then
-    /// nothing is made of it.
-    fn first(
+    fn whole(
         &self,
-        of: &RsmFrame,
-        stages: &mut Stages<'_>,
+        frame: &RsmFrame,
         own: &mut FrameArrays,
-    ) -> Result<bool, GpuError> {
-        let frame = &of.frame;
-        own.seen = stages.gbuffer(&triangles(&frame.seen))?;
-        if judge::surfaces(&frame.seen, &own.seen).differ() > 0 {
-            return Ok(false);
+        tally: &mut Tally,
+    ) -> Result<End, GpuError> {
+        let mut stages = self.stages(frame)?;
+        if !self.cells(frame, &mut stages, tally)? {
+            return Ok(End::Wrong);
         }
-        if !self.runs("rsm") {
-            own.lights = frame.rsm.lights();
-            own.places = vec![None; own.seen.len()];
-            return Ok(true);
+        let Some(keys) = self.first(frame, &mut stages, own, tally)? else {
+            return Ok(End::Wrong);
+        };
+        let lights = own.lights.iter().flatten();
+        let finite = |c: &f32| c.is_finite() && *c >= 0.0;
+        if !lights.flat_map(|light| &light.intensity).all(finite) {
+            return Ok(End::Beyond);
         }
-        let (texels, intensities) = stages.rsm(&triangles(&frame.rsm.seen))?;
-        let near = judge::surfaces(&frame.rsm.seen, &texels);
-        let bright = judge::colours("intensities", &frame.rsm.intensity, &intensities, |_| None);
-        let finite = intensities
-            .iter()
-            .flatten()
-            .all(|c| c.is_finite() && *c >= 0.0);
-        own.places = stages.place(&own.seen)?;
-        let light = &self.spec.value.setup.lamp.view;
-        let seen = Gbuffer {
-            surfaces: own.seen.clone(),
-            ..frame.seen.clone()
-        };
-        let expected = triptych_spec::rsm::place(light, &seen);
-        let placed = judge::places(light, &own.seen, &expected, &own.places);
-        let wrong = [near, bright, placed]
-            .iter()
-            .any(|judged| judged.differ() > 0);
-        let light = |(surface, intensity): (Option<Surface>, [f32; 3])| {
-            surface.map(|surface| Light { surface, intensity })
-        };
-        own.lights = texels.into_iter().zip(intensities).map(light).collect();
-        Ok(!wrong && finite)
+        let rays = self.rest(&mut stages, own, &keys, frame)?;
+        let (lit, blocked, picture) = self.expected(frame, own, &keys);
+        let judged = self.beside(lit, &own.lit, |a, b| judge::lit(a, b));
+        tally.part(STAGE, judged);
+        let setting = self.spec.value.setting(frame);
+        let place = |pixel| word(of_coarse(&setting, &frame.frame, pixel));
+        let judged = self.beside(blocked, (&own.bits, rays), |a, (bits, rays)| {
+            judge::blocked(a, (bits, *rays), place)
+        });
+        tally.part(STAGE, judged);
+        let judged = self.beside(picture, &own.picture, |a, b| pixels(a, b));
+        tally.part(STAGE, judged);
+        Ok(End::Picture)
     }
 
     /// What it makes of that; gives how many rays it asked for.
     fn rest(
         &self,
-        of: &RsmFrame,
         stages: &mut Stages<'_>,
         own: &mut FrameArrays,
+        keys: &[u32],
+        of: &RsmFrame,
     ) -> Result<u64, GpuError> {
         let frame = &of.frame;
         let (seen, places, lights) = (&own.seen, &own.places, &own.lights);
         let dark = |pixels: usize| vec![[0.0; 3]; pixels];
         (own.lit, own.direct) = match self.runs("direct") {
-            true => stages.direct(seen, places, &frame.rsm.seen.keys)?,
+            true => stages.direct(seen, places, keys)?,
             false => (vec![false; seen.len()], dark(seen.len())),
         };
         own.all = match self.runs("gather") {
@@ -144,7 +132,12 @@ impl RsmLeg<'_> {
     }
 
     /// The spec from the same surfaces, lights and places.
-    fn expected(&self, of: &RsmFrame, own: &FrameArrays) -> (Vec<bool>, Blocked, Vec<Colour>) {
+    fn expected(
+        &self,
+        of: &RsmFrame,
+        own: &FrameArrays,
+        keys: &[u32],
+    ) -> (Vec<bool>, Blocked, Vec<Colour>) {
         let setting = self.spec.value.setting(of);
         let Setting {
             model,
@@ -158,7 +151,7 @@ impl RsmLeg<'_> {
             ..of.frame.seen.clone()
         };
         let FrameArrays { lights, places, .. } = own;
-        let (keys, size) = (&of.frame.rsm.seen.keys, lamp.view.size);
+        let size = lamp.view.size;
         let direct = direct(model, &seen, places, lamp, keys, parameters);
         let all = gather(model, &seen, places, lights, size, parameters);
         let coarse = Coarse::new(&seen, parameters);
