@@ -6,6 +6,8 @@
 //! for `cargo insta review`. With `TRIPTYCH_ROWS=DIR` every scene leaves its rows there as
 //! JSON lines, which `triptych report` merges, whatever machine or shard tested it.
 
+#[path = "scenes/closed.rs"]
+mod closed;
 #[path = "scenes/contributor.rs"]
 mod contributor;
 mod devices;
@@ -54,6 +56,14 @@ fn main() -> ExitCode {
                 .with_ignored_flag(missing.is_some())
         })
         .collect();
+    let closed = entries
+        .iter()
+        .filter(|entry| closed::SCENES.contains(&&entry.name[..]));
+    trials.extend(closed.map(|entry| {
+        let missing = missing_mesh(entry).is_some();
+        let (entry, name) = (entry.clone(), format!("closed/{}", entry.name));
+        Trial::test(name, move || closed::nothing_leaves(&entry)).with_ignored_flag(missing)
+    }));
     trials.push(Trial::test("snapshots/every-one-has-a-scene", move || {
         dangling(&snapshots(), &entries)
     }));

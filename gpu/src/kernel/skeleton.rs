@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use naga::{AddressSpace, Handle, Module, StorageAccess, Type, TypeInner};
+use naga::{AddressSpace, BuiltIn, Handle, Module, StorageAccess, Type, TypeInner};
 
 use super::layout::type_name;
 use super::stage::Stage;
@@ -39,8 +39,8 @@ pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
         declare(&mut text, &program.module, variable);
     }
     let attributes = format!("@compute @workgroup_size({WORKGROUP})");
-    let (arguments, guard) = invocation(stage);
     for entry in stage.compute {
+        let (arguments, guard) = invocation(&program.module, stage, entry);
         function(&mut text, &attributes, entry, &arguments, &guard);
     }
     for entry in stage.fragment {
@@ -51,25 +51,55 @@ pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
     Ok(text)
 }
 
-/// What a compute entry point is given, and how it leaves out what is too many.
-fn invocation(stage: &Stage) -> (String, String) {
-    let id = "@builtin(global_invocation_id) id: vec3<u32>";
-    let guard =
-        |i: &str, items: &str| format!("    if {i} >= {items} {{\n        return;\n    }}\n");
-    match (stage.file, stage.name) {
-        (file @ ("grid" | "rsm"), _) => {
-            let groups = format!("{id}, @builtin(num_workgroups) groups: vec3<u32>");
-            let item = format!("    let i = id.x + id.y * groups.x * {WORKGROUP}u;\n");
-            let told = if file == "grid" {
-                "cells"
-            } else {
-                "parameters"
-            };
-            (groups, item + &guard("i", &format!("{told}.items")))
-        }
-        (_, "sort" | "resolve") => (id.to_owned(), guard("id.x", "frame.width * frame.rows")),
-        _ => (id.to_owned(), guard("id.x", "frame.items")),
-    }
+/// What a compute entry point of ours is given, and how it leaves out what is too many. Where
+/// invocations of a workgroup meet at a barrier, none may leave before.
+fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
+    let inputs = inputs(module, entry);
+    let given: Vec<String> = inputs.iter().map(|input| argument(*input)).collect();
+    let items = match (stage.file, stage.name) {
+        ("grid", _) => "cells.items",
+        ("rsm", _) => "parameters.items",
+        (_, "sort" | "resolve") => "frame.width * frame.rows",
+        _ => "frame.items",
+    };
+    let has = |input| inputs.contains(&input);
+    let body = match (
+        has(BuiltIn::GlobalInvocationId),
+        has(BuiltIn::NumWorkGroups),
+    ) {
+        _ if has(BuiltIn::LocalInvocationIndex) => format!(
+            "    // Of {items}; a workgroup may share its work, and none of it may leave before a \
+             barrier.\n"
+        ),
+        (true, true) => format!(
+            "    let i = id.x + id.y * groups.x * {WORKGROUP}u;\n    if i >= {items} {{\n        \
+             return;\n    }}\n"
+        ),
+        _ => format!("    if id.x >= {items} {{\n        return;\n    }}\n"),
+    };
+    (given.join(", "), body)
+}
+
+/// What our own entry point is told of the invocation.
+fn inputs(module: &Module, entry: &str) -> Vec<BuiltIn> {
+    let ours = module.entry_points.iter().find(|e| e.name == entry);
+    let arguments = ours.map_or(&[][..], |e| &e.function.arguments);
+    let builtin = |argument: &naga::FunctionArgument| match argument.binding {
+        Some(naga::Binding::BuiltIn(builtin)) => Some(builtin),
+        _ => None,
+    };
+    arguments.iter().filter_map(builtin).collect()
+}
+
+fn argument(input: BuiltIn) -> String {
+    let (name, variable, ty) = match input {
+        BuiltIn::GlobalInvocationId => ("global_invocation_id", "id", "vec3<u32>"),
+        BuiltIn::LocalInvocationIndex => ("local_invocation_index", "lane", "u32"),
+        BuiltIn::NumWorkGroups => ("num_workgroups", "groups", "vec3<u32>"),
+        // No kernel of ours asks for another one: a test makes every skeleton.
+        _ => ("workgroup_id", "group", "vec3<u32>"),
+    };
+    format!("@builtin({name}) {variable}: {ty}")
 }
 
 /// Variables of all the stage's entry points, in order of binding.

@@ -1,62 +1,67 @@
 //! A kernel steps through cells in `f32`, whose rounding WGSL leaves open.
 
 use proptest::prelude::*;
-use triptych_spec::grid::Grid;
 use triptych_spec::grid::axis::WIDENED;
-use triptych_spec::grid::hit::crossing;
+use triptych_spec::grid::hit::{crossing, timed};
 use triptych_spec::grid::lattice::REACH;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::walk::step_bound;
+use triptych_spec::grid::{Blockers, Grid};
 
 use super::aimed;
 use crate::config;
 use crate::loose::Loose;
 
-/// The steps of the kernel in `gpu/src/trace.wgsl`, in arithmetic of its own.
+/// A ray's way through the cells as `gpu/src/{march,bricks,search}.wgsl` go it, in arithmetic of
+/// its own: exits are kept but for the axis that was stepped on, empty bricks are crossed at once,
+/// and a hit ends the search once a cell is left after it.
 struct Kernel<'a> {
     grid: &'a Grid,
+    blockers: &'a Blockers,
     ray: Ray,
     inverse: [f32; 3],
 }
 
+/// What a kernel found: everything that was listed on its way, and of what is met the first by
+/// times of its own.
+#[derive(Default)]
+struct Found {
+    listed: Vec<u32>,
+    nearest: Option<(f32, u32)>,
+}
+
 impl<'a> Kernel<'a> {
-    fn new(grid: &'a Grid, ray: Ray, loose: &mut Loose) -> Self {
+    fn new(grid: &'a Grid, blockers: &'a Blockers, ray: Ray, loose: &mut Loose) -> Self {
         let inverse = ray.direction.map(|d| match d {
             0 => 0.0,
             d => loose.div(1.0, d as f32),
         });
-        Self { grid, ray, inverse }
+        Self {
+            grid,
+            blockers,
+            ray,
+            inverse,
+        }
     }
 
-    fn time(&self, axis: usize, boundary: usize, loose: &mut Loose) -> f32 {
-        let boundary = self.grid.axes[axis].boundaries()[boundary] as f32;
+    fn cells(&self, axis: usize) -> i32 {
+        self.grid.axes[axis].cells().cast_signed()
+    }
+
+    /// When a boundary is crossed, evaluated anew.
+    fn time(&self, axis: usize, boundary: i32, loose: &mut Loose) -> f32 {
+        let boundaries = self.grid.axes[axis].boundaries();
+        let boundary = boundaries[usize::try_from(boundary).unwrap()] as f32;
         let way = loose.sub(boundary, self.ray.origin[axis] as f32);
         loose.mul(way, self.inverse[axis])
     }
 
-    fn forward(&self, axis: usize) -> bool {
-        self.ray.direction[axis] > 0
+    fn step(&self, axis: usize) -> i32 {
+        self.ray.direction[axis].signum()
     }
 
-    fn cells(&self, axis: usize) -> usize {
-        self.grid.axes[axis].cells() as usize
-    }
-
-    /// Cells in the order of the ray, `n` from 0.
-    fn nth(&self, axis: usize, n: usize) -> usize {
-        if self.forward(axis) {
-            n
-        } else {
-            self.cells(axis) - 1 - n
-        }
-    }
-
-    fn near(&self, axis: usize, n: usize) -> usize {
-        if self.forward(axis) {
-            n
-        } else {
-            self.cells(axis) - n
-        }
+    fn up(&self, axis: usize) -> i32 {
+        i32::from(self.step(axis) > 0)
     }
 
     fn moving(&self) -> impl Iterator<Item = usize> + use<> {
@@ -64,73 +69,178 @@ impl<'a> Kernel<'a> {
         (0..3).filter(move |axis| direction[*axis] != 0)
     }
 
-    fn start(&self, loose: &mut Loose) -> Option<[usize; 3]> {
+    fn is_inside(&self, cell: [i32; 3]) -> bool {
+        (0..3).all(|axis| (0..self.cells(axis)).contains(&cell[axis]))
+    }
+
+    fn exits(&self, cell: [i32; 3], loose: &mut Loose) -> [f32; 3] {
+        [0, 1, 2].map(|axis| match self.step(axis) {
+            0 => NEVER,
+            _ => self.time(axis, cell[axis] + self.up(axis), loose),
+        })
+    }
+
+    fn entrance(&self, loose: &mut Loose) -> Option<[i32; 3]> {
         let mut entry = 0.0_f32;
         for axis in self.moving() {
-            entry = entry.max(self.time(axis, self.near(axis, 0), loose));
+            let first = if self.step(axis) > 0 {
+                0
+            } else {
+                self.cells(axis)
+            };
+            entry = entry.max(self.time(axis, first, loose));
         }
         if self.ray.segment && entry > 1.0 {
             return None;
         }
-        let mut ns = [0; 3];
-        for (axis, n) in ns.iter_mut().enumerate() {
-            let boundaries = self.grid.axes[axis].boundaries();
-            let passed = match self.ray.direction[axis] {
-                0 => boundaries.partition_point(|b| *b <= self.ray.origin[axis]),
-                _ => {
-                    // The first is passed by the choice of `entry`; evaluated again, its
-                    // time may come out later.
-                    let (mut low, mut high) = (1, self.cells(axis) + 1);
-                    while low < high {
-                        let middle = usize::midpoint(low, high);
-                        let time = self.time(axis, self.near(axis, middle), loose);
-                        if time <= entry {
-                            low = middle + 1
-                        } else {
-                            high = middle
-                        }
-                    }
-                    low
-                }
-            };
-            // At its very end the ray is still at the grid.
-            *n = passed
-                .checked_sub(1)
-                .filter(|n| *n <= self.cells(axis))?
-                .min(self.cells(axis) - 1);
-        }
-        Some(ns)
+        let cell = [0, 1, 2].map(|axis| self.cell_on(axis, entry, loose));
+        self.is_inside(cell).then_some(cell)
     }
 
-    /// Every triangle that is listed where the kernel comes along.
-    fn seen(&self, loose: &mut Loose) -> Vec<u32> {
-        let mut seen = Vec::new();
-        let Some(mut ns) = self.start(loose) else {
-            return seen;
+    fn cell_on(&self, axis: usize, entry: f32, loose: &mut Loose) -> i32 {
+        let count = self.cells(axis);
+        if self.step(axis) == 0 {
+            let boundaries = self.grid.axes[axis].boundaries();
+            let passed = boundaries.partition_point(|b| *b <= self.ray.origin[axis]);
+            let passed = i32::try_from(passed).unwrap();
+            return if passed <= count { passed - 1 } else { -1 };
+        }
+        // The first is passed by the choice of `entry`; evaluated again, its time may come out
+        // later.
+        let (mut low, mut high) = (1, count + 1);
+        let forward = self.step(axis) > 0;
+        while low < high {
+            let middle = i32::midpoint(low, high);
+            let boundary = if forward { middle } else { count - middle };
+            match self.time(axis, boundary, loose) <= entry {
+                true => low = middle + 1,
+                false => high = middle,
+            }
+        }
+        let nth = low.min(count) - 1;
+        if forward { nth } else { count - 1 - nth }
+    }
+
+    fn list(&self, cell: [i32; 3]) -> &[u32] {
+        self.grid.list(cell.map(i32::cast_unsigned))
+    }
+
+    fn is_empty_brick(&self, cell: [i32; 3]) -> bool {
+        let ranges = [0, 1, 2].map(|axis| {
+            let first = cell[axis] & -4;
+            first..(first + 4).min(self.cells(axis))
+        });
+        let [xs, ys, zs] = ranges;
+        zs.into_iter().all(|z| {
+            let (xs, ys) = (xs.clone(), ys.clone());
+            ys.into_iter()
+                .all(|y| xs.clone().all(|x| self.list([x, y, z]).is_empty()))
+        })
+    }
+
+    /// The neighbour of an empty brick; `None` if the search ends in it.
+    fn over_brick(&self, cell: [i32; 3], found: &Found, loose: &mut Loose) -> Option<[i32; 3]> {
+        let last = [0, 1, 2].map(|axis| {
+            let first = cell[axis] & -4;
+            let end = (first + 3).min(self.cells(axis) - 1);
+            if self.up(axis) == 1 { end } else { first }
+        });
+        let exit = self.exits(last, loose);
+        let time = soonest(exit);
+        if self.ends(found, time) {
+            return None;
+        }
+        let mut next =
+            [0, 1, 2].map(|axis| self.settled(axis, cell[axis], last[axis], time, loose));
+        let axis = first_of(exit);
+        next[axis] = last[axis] + self.step(axis);
+        Some(next)
+    }
+
+    /// The cell of an axis at a time, in steps of two and one.
+    fn settled(&self, axis: usize, cell: i32, last: i32, time: f32, loose: &mut Loose) -> i32 {
+        let (step, up) = (self.step(axis), self.up(axis));
+        let mut at = cell;
+        if (last - at) * step >= 2 && self.time(axis, at + step + up, loose) <= time {
+            at += 2 * step;
+        }
+        if (last - at) * step >= 1 && self.time(axis, at + up, loose) <= time {
+            at += step;
+        }
+        at
+    }
+
+    fn ends(&self, found: &Found, exit: f32) -> bool {
+        let hit = found.nearest.map_or(NEVER, |(time, _)| time);
+        hit < exit || self.ray.segment && exit > 1.0
+    }
+
+    /// Looks a list through; times are anywhere within their bounds.
+    fn look(&self, cell: [i32; 3], found: &mut Found, loose: &mut Loose) {
+        for &prim in self.list(cell) {
+            let Some(time) = timed(&self.ray, self.blockers.corners(prim)) else {
+                continue;
+            };
+            let off = [0.0, -time.bound, time.bound][usize::try_from(loose.choose(3)).unwrap()];
+            // Within the bound once more, where rounding left it.
+            let time = (time.value + off) as f32;
+            if found.nearest.is_none_or(|nearest| (time, prim) < nearest) {
+                found.nearest = Some((time, prim));
+            }
+        }
+    }
+
+    /// The whole way; with `hits` it ends after the first, else where the grid does.
+    fn found(&self, hits: bool, loose: &mut Loose) -> Found {
+        let mut found = Found::default();
+        let Some(mut cell) = self.entrance(loose) else {
+            return found;
         };
-        // On an axis without movement `n` counts boundaries upwards.
-        let index = |axis: usize, n: usize| match self.ray.direction[axis] {
-            0 => n,
-            _ => self.nth(axis, n),
-        };
+        let mut exit = self.exits(cell, loose);
         for _ in 0..step_bound(self.grid) {
-            let cell = [0, 1, 2].map(|axis| u32::try_from(index(axis, ns[axis])).unwrap());
-            seen.extend_from_slice(self.grid.list(cell));
-            let mut exit = (f32::INFINITY, 3);
-            for axis in self.moving() {
-                let time = self.time(axis, self.near(axis, ns[axis] + 1), loose);
-                if time < exit.0 {
-                    exit = (time, axis);
+            if self.is_empty_brick(cell) {
+                let Some(next) = self.over_brick(cell, &found, loose) else {
+                    return found;
+                };
+                cell = next;
+                if !self.is_inside(cell) {
+                    return found;
                 }
+                exit = self.exits(cell, loose);
+                continue;
             }
-            ns[exit.1] += 1;
-            if self.ray.segment && exit.0 > 1.0 || ns[exit.1] == self.cells(exit.1) {
-                return seen;
+            found.listed.extend_from_slice(self.list(cell));
+            if hits {
+                self.look(cell, &mut found, loose);
             }
+            if self.ends(&found, soonest(exit)) {
+                return found;
+            }
+            let axis = first_of(exit);
+            cell[axis] += self.step(axis);
+            if !self.is_inside(cell) {
+                return found;
+            }
+            exit[axis] = self.time(axis, cell[axis] + self.up(axis), loose);
         }
         panic!("more steps than the bound");
     }
 }
+
+fn soonest([x, y, z]: [f32; 3]) -> f32 {
+    x.min(y).min(z)
+}
+
+/// The axis of the soonest exit.
+fn first_of([x, y, z]: [f32; 3]) -> usize {
+    if x <= y.min(z) {
+        return 0;
+    }
+    if y <= z { 1 } else { 2 }
+}
+
+/// Later than anything that a ray meets. Twin: `NEVER` in `march.wgsl`.
+const NEVER: f32 = 3e38;
 
 proptest! {
     #![proptest_config(config(3000))]
@@ -141,10 +251,29 @@ proptest! {
     fn misses_nothing((blockers, grid, rays) in aimed(), seed in any::<u64>()) {
         for ray in rays.iter().filter(|ray| ray.moves()) {
             let mut loose = Loose::new(seed);
-            let seen = Kernel::new(&grid, *ray, &mut loose).seen(&mut loose);
+            let kernel = Kernel::new(&grid, &blockers, *ray, &mut loose);
+            let seen = kernel.found(false, &mut loose).listed;
             for prim in 0..u32::try_from(blockers.triangles.len()).unwrap() {
                 let met = crossing(ray, blockers.corners(prim)).is_some();
                 prop_assert!(!met || seen.contains(&prim), "{:?} misses {}", ray, prim);
+            }
+        }
+    }
+
+    /// A search that ends with a hit has met something if anything is met, and nothing that is
+    /// left is certainly before it.
+    #[test]
+    fn ends_with_the_first((blockers, grid, rays) in aimed(), seed in any::<u64>()) {
+        for ray in rays.iter().filter(|ray| ray.moves()) {
+            let mut loose = Loose::new(seed);
+            let kernel = Kernel::new(&grid, &blockers, *ray, &mut loose);
+            let nearest = kernel.found(true, &mut loose).nearest;
+            let latest = nearest.map_or(f64::INFINITY, |(time, _)| f64::from(time));
+            for prim in 0..u32::try_from(blockers.triangles.len()).unwrap() {
+                let Some(time) = timed(ray, blockers.corners(prim)) else { continue };
+                // `look` rounds once more.
+                let may = (time.value + time.bound) as f32;
+                prop_assert!(latest <= f64::from(may), "{:?}: {} for {:?}", ray, latest, time);
             }
         }
     }

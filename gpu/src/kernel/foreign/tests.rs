@@ -45,6 +45,27 @@ fn every_skeleton_is_a_kernel() {
     }
 }
 
+/// An entry point is told what ours is; where a workgroup works together, none of it leaves.
+#[test]
+fn skeletons_are_told_what_our_kernels_are() {
+    let function = |stage_name: &str, entry: &str| {
+        let text = skeleton(stage(stage_name)).expect("ours");
+        let from = text.find(&format!("fn {entry}(")).expect("an entry point");
+        text[from..].split("\n}").next().unwrap_or("").to_owned()
+    };
+    let scan = function("scan", "scan");
+    let group =
+        "@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32";
+    assert!(scan.contains(group) && !scan.contains("return"), "{scan}");
+    let chunks = function("count", "count_chunks");
+    assert!(
+        chunks.contains(group.split(',').next().unwrap_or("")),
+        "{chunks}"
+    );
+    let count = function("count", "count");
+    assert!(count.contains("if i >= cells.items"), "{count}");
+}
+
 #[test]
 fn our_own_files_are_kernels() {
     for stage in &STAGES {

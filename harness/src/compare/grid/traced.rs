@@ -63,9 +63,10 @@ pub fn any(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
     judgement
 }
 
-/// Closest hit, a decision: what a kernel names is met, its time is within the bound, and no
-/// triangle is certainly met before it. Where bounds leave open which comes first, either may;
-/// those rays are counted as admitted if the kernel took another than the spec.
+/// Closest hit, a decision: what a kernel names is met, its time is within the bound, and the
+/// nearest, whose time a kernel may have as late as its own bound, is not before it. Where bounds
+/// leave open which comes first, either may; those rays are counted as admitted if the kernel took
+/// another than the spec.
 pub fn closest(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
     let mut judgement = rays(Class::Decision, asked, seen);
     let mut largest = [0.0_f64; 2];
@@ -93,7 +94,7 @@ pub fn closest(asked: Asked<'_>, seen: &[Hit]) -> Judgement {
         if error > 0.0 {
             largest = [largest[0].max(error), largest[1].max(error / time.bound)];
         }
-        if time.value - time.bound > nearest.value + nearest.bound {
+        if seen > nearest.value + nearest.bound {
             judgement.differs(Cause::DepthKey, None, || {
                 let (other, at_first) = (hit.prim, nearest.value);
                 format!(
