@@ -92,6 +92,33 @@ fn the_report_shows_a_grid() {
     }
 }
 
+/// Options that only rasterised scenes know are told once, and a vote without rays says so.
+#[test]
+fn options_without_effect_are_told_once() {
+    let place = Place::new("grid-options");
+    let unasked = GRID.replace("= 50", "= 0");
+    place
+        .write("corpus/grid/quads/scene.toml", GRID)
+        .write("corpus/grid/twice/scene.toml", GRID)
+        .write("corpus/grid/unasked/scene.toml", &unasked);
+    let told = "without effect on scenes with [grid] or [rsm]: ";
+    for (options, said) in [
+        (&[][..], None),
+        (&["--gpu-from", "sort"], Some("--gpu-from")),
+        (&["--vertex", "gpu"], Some("--vertex")),
+    ] {
+        let arguments = [&["replay", "--leg", "embree"], options].concat();
+        let ran = place.run(&arguments).expect(0);
+        let all = format!("{}{}", ran.stdout, ran.stderr);
+        assert_eq!(all.matches(told).count(), said.iter().len(), "{all}");
+        assert!(
+            said.is_none_or(|said| all.contains(&format!("{told}{said}\n"))),
+            "{all}"
+        );
+        assert!(all.contains("no ray is asked for"), "{all}");
+    }
+}
+
 /// Two quads that block rays.
 const GRID: &str = r#"
 purpose = "two quads across the way of rays"
