@@ -129,12 +129,12 @@ fn limits_are_told_by_key() {
     let light = "rsm.reference: a strength of [1.0, 1.0, 1.0] at a distance of 1e300 is more light \
                  than 32-bit numbers hold; a shorter one, or a smaller strength, is right";
     told("reference = 1e300", SPOT, 18, light);
-    let none = "rsm.reference: 0e0 is no distance of a light; 2.384185791015625e-7, half a step of \
+    let none = "rsm.reference: 0e0 is no distance of a light; 2.384e-7, half a step of \
                 the lattice, or more is right";
     told("reference = 0", SPOT, 18, none);
-    let edge = "rsm.edge: 1e0 is outside 0 to 5e-1, a 16th of the lattice's side";
+    let edge = "rsm.edge: 1e0 is outside 0 to 5.000e-1, a 16th of the lattice's side";
     told("edge = 1", SUN, 18, edge);
-    let clamp = "rsm.clamp: 1e300 is outside 0 to 1.3856406460551018e1, the lattice's diagonal";
+    let clamp = "rsm.clamp: 1e300 is outside 0 to 1.386e1, the lattice's diagonal";
     told("clamp = 1e300", SUN, 18, clamp);
     let huge = "eye = [2, 2, 0], target = [-2, 2, 0], height = 1e30, near = 1, far = 9";
     let (line, words) = error("", huge);

@@ -50,7 +50,7 @@ impl Told<'_> {
             RsmError::Limit { .. } => Mistake::of(
                 key,
                 format!(
-                    "{distance:e} is no distance of a light; {:e}, half a step of the lattice, or more is \
+                    "{distance:e} is no distance of a light; {:.3e}, half a step of the lattice, or more is \
                      right",
                     self.units(0.5)
                 ),
@@ -70,7 +70,7 @@ impl Told<'_> {
                 let given = self.rsm.edge.map_or(0.0, |length| length.0);
                 let most = self.units(f64::from(EDGE_MAX));
                 let message =
-                    format!("{given:e} is outside 0 to {most:e}, a 16th of the lattice's side");
+                    format!("{given:e} is outside 0 to {most:.3e}, a 16th of the lattice's side");
                 Mistake::of("rsm.edge", message)
             }
             "the number of rays" => Mistake::of(
@@ -86,7 +86,7 @@ impl Told<'_> {
         // The lattice's diagonal.
         let most = self.units(libm::sqrt(3.0) * 16_777_216.0);
         if self.rsm.clamp.is_some() {
-            let message = format!("{given:e} is outside 0 to {most:e}, the lattice's diagonal");
+            let message = format!("{given:e} is outside 0 to {most:.3e}, the lattice's diagonal");
             return Mistake::of("rsm.clamp", message);
         }
         let (key, name) = match self.light.projection {
@@ -94,8 +94,8 @@ impl Told<'_> {
             Projection::Orthographic { .. } => ("rsm.lamp.height", "height"),
         };
         let message = format!(
-            "two texels of the kernel, the default of clamp, are {given:e} long at the lamp's target, \
-             outside 0 to {most:e}, the lattice's diagonal; state clamp or a smaller {name}"
+            "two texels of the kernel, the default of clamp, are {given:.3e} long at the lamp's target, \
+             outside 0 to {most:.3e}, the lattice's diagonal; state clamp or a smaller {name}"
         );
         Mistake::of(key, message)
     }

@@ -8,16 +8,15 @@ use crate::mesh::Intake;
 use crate::replay::rsm::{RsmRun, Setup};
 use crate::scene::{Loaded, load_text};
 
-/// A wall, lit and seen head-on from as far as the lamp, with more keys and meshes.
+/// A wall and a floor before it, with more keys and meshes.
 fn scene(size: [u32; 2], keys: &str, meshes: &str) -> Loaded {
     let text = format!(
         "
-purpose = 'a wall'
+purpose = 'a wall and a floor'
 size = {size:?}
 camera = {{ eye = [0, 0, 4], target = [0, 0, 0], height = 4, near = 1, far = 9 }}
 [rsm]
-map = [32, 32]
-radius = 32
+map = [64, 64]
 stride = 1
 {keys}
 lamp = {{ eye = [0, 0, 4], target = [0, 0, 0], height = 4, near = 1, far = 9 }}
@@ -26,6 +25,7 @@ generate.faces = {{ vertices = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]],
 [[mesh]]
 generate.faces = {{ vertices = [[-2, -2, 0], [2, -2, 0], [2, -2, 2], [-2, -2, 2]], faces = [[0, 1, 2, 3]] }}
 rotate = [15, 0, 0]
+translate = [0, 0.6, 0.6]
 {meshes}
 "
     );
@@ -43,7 +43,7 @@ fn refused(loaded: &Loaded) -> String {
 
 #[test]
 fn entries_of_all_frames_are_held_together() {
-    let loaded = scene([4, 4], "frames = 3", "");
+    let loaded = scene([4, 4], "radius = 1\nframes = 3", "");
     let setup = Setup::new(&loaded).expect("a lattice");
     let mut limits = Limits::new(&setup);
     let mut parts = setup.parts(&loaded, 0).expect("a frame");
@@ -64,14 +64,14 @@ fn entries_of_all_frames_are_held_together() {
 #[test]
 fn fragments_of_all_frames_are_bounded() {
     let of = |frames: u32, layers: u32| {
-        let keys = format!("frames = {frames}");
+        let keys = format!("radius = 1\nframes = {frames}");
         let quads = format!(
             "[[mesh]]\ngenerate.stack = {{ layers = {layers}, spacing = 0, size = [4, 4] }}"
         );
         scene([64, 64], &keys, &quads)
     };
-    // 64 x 64 pixels and 32 x 32 texels of each quad, and those of the wall.
-    RsmRun::new(&of(1, 2000), true).expect("ten millions");
+    // 64 x 64 pixels and texels of each quad, and those of wall and floor.
+    RsmRun::new(&of(1, 2000), true).expect("sixteen millions");
     let error = refused(&of(7, 2000));
     let words = "rsm: the triangles cover ";
     assert!(
@@ -85,10 +85,10 @@ fn fragments_of_all_frames_are_bounded() {
 #[test]
 fn the_rays_of_embree_count_as_well() {
     let specks = "[[mesh]]\ngenerate.scatter = { count = 200_000, extent = [1e-4, 1e-4, 1e-4], \
-                  length = 1e-5, width = 1e-5 }\ntranslate = [-1.96, 1.96, 0.01]\nseen = false\n\
+                  length = 1e-5, width = 1e-5 }\ntranslate = [-1.97, 1.965, 0.01]\nseen = false\n\
                   blocks = true\n[[mesh]]\ngenerate.box = { size = [4, 4, 4] }\nseen = false\n\
                   blocks = true";
-    let loaded = scene([64, 64], "divisor = 64", specks);
+    let loaded = scene([64, 64], "radius = 64\ndivisor = 64", specks);
     let told = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads").install(|| refused(&loaded))
