@@ -119,7 +119,7 @@ fn options_without_effect_are_told_once() {
     }
 }
 
-/// Two quads that block rays.
+/// Two quads that block rays, as a newcomer writes it: without a budget.
 const GRID: &str = r#"
 purpose = "two quads across the way of rays"
 size = [8, 8]
@@ -128,6 +128,4 @@ generate.stack = { layers = 2, size = [4, 4], spacing = 1 }
 [grid]
 resolution = [4, 4, 2]
 rays = { random = 50, aimed = 50, edge = 50, vertex = 50, grazing = 50, cell = 50 }
-[budget]
-edge = 1
 "#;
