@@ -92,7 +92,34 @@ fn the_report_shows_a_grid() {
     }
 }
 
-/// Two quads that block rays.
+/// Options that only rasterised scenes know are told once, and a vote without rays says so.
+#[test]
+fn options_without_effect_are_told_once() {
+    let place = Place::new("grid-options");
+    let unasked = GRID.replace("= 50", "= 0");
+    place
+        .write("corpus/grid/quads/scene.toml", GRID)
+        .write("corpus/grid/twice/scene.toml", GRID)
+        .write("corpus/grid/unasked/scene.toml", &unasked);
+    let told = "without effect on scenes with [grid] or [rsm]: ";
+    for (options, said) in [
+        (&[][..], None),
+        (&["--gpu-from", "sort"], Some("--gpu-from")),
+        (&["--vertex", "gpu"], Some("--vertex")),
+    ] {
+        let arguments = [&["replay", "--leg", "embree"], options].concat();
+        let ran = place.run(&arguments).expect(0);
+        let all = format!("{}{}", ran.stdout, ran.stderr);
+        assert_eq!(all.matches(told).count(), said.iter().len(), "{all}");
+        assert!(
+            said.is_none_or(|said| all.contains(&format!("{told}{said}\n"))),
+            "{all}"
+        );
+        assert!(all.contains("no ray is asked for"), "{all}");
+    }
+}
+
+/// Two quads that block rays, as a newcomer writes it: without a budget.
 const GRID: &str = r#"
 purpose = "two quads across the way of rays"
 size = [8, 8]
@@ -101,6 +128,4 @@ generate.stack = { layers = 2, size = [4, 4], spacing = 1 }
 [grid]
 resolution = [4, 4, 2]
 rays = { random = 50, aimed = 50, edge = 50, vertex = 50, grazing = 50, cell = 50 }
-[budget]
-edge = 1
 "#;

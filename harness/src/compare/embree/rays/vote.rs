@@ -132,6 +132,7 @@ impl RayVote {
         };
         if self.disagree == 0 && asked == self.edge {
             let reason = match asked {
+                0 if self.rays == 0 => "no ray is asked for".to_owned(),
                 0 => "no ray moves".to_owned(),
                 _ => format!("all {asked} rays are in class edge"),
             };
