@@ -110,7 +110,10 @@ fn rays(loaded: &Loaded) -> Result<(), Mistake> {
     blockers(loaded)?;
     let grid = loaded.file.grid.unwrap_or_default();
     let cells = grid.resolution.map_or([1; 3], |cells| cells.0);
-    let rays: u64 = Kind::ALL.iter().map(|kind| u64::from(kind.count(&grid.rays))).sum();
+    let rays: u64 = Kind::ALL
+        .iter()
+        .map(|kind| u64::from(kind.count(&grid.rays)))
+        .sum();
     let cells: u64 = cells.into_iter().map(u64::from).product();
     if loaded.scene.triangles.len() > 64 || rays > 2048 || cells > 4096 {
         return Ok(());
