@@ -146,3 +146,87 @@ fn is_later(asked: Asked<'_>, ray: &Ray, prim: u32, first: &Closest) -> bool {
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use triptych_spec::grid::resolution::Resolution;
+    use triptych_spec::grid::{Blockers, Grid, Membership};
+
+    use super::{Asking, Compared, Query, Rivals, unlike};
+
+    /// Two sheets behind each other, as large as the box.
+    fn sheets() -> Blockers {
+        let sheet = |z| [[-4096, -4096, z], [8192, -4096, z], [-4096, 8192, z]];
+        Blockers {
+            vertices: [sheet(0), sheet(4096)].concat(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+        }
+    }
+
+    #[test]
+    fn who_misses_or_takes_another_is_counted() {
+        let blockers = sheets();
+        let grid = Grid::build(&blockers, Resolution::FromScene, Membership::Box);
+        let grid = grid.expect("within the limits");
+        let rivals = Rivals::new(&blockers).expect("Embree builds");
+        let kinds = Asking::all((&blockers, &grid), 3, (2000, false), &rivals);
+        let [random, _, through] = &kinds[..] else {
+            panic!("three kinds");
+        };
+        let asked = through.asked(&blockers, 2000);
+        let met = asked.answers.iter().flatten().count() as u64;
+        assert!(
+            (100..1900).contains(&met),
+            "{met} of 2000 rays meet something"
+        );
+        for query in [Query::Any, Query::Closest] {
+            assert_eq!(unlike(asked, query, |_| None), met, "misses everything");
+            let all = unlike(asked, query, |_| Some(Some(0)));
+            assert!(all >= 2000 - met, "{all}: meets everything");
+        }
+        let both = |answers: &[Option<super::Closest>]| {
+            let rays = asked.rays.iter().zip(answers);
+            let both = rays.filter(|(ray, first)| {
+                let behind = first.map(|first| blockers.corners(1 - first.prim));
+                behind.is_some_and(|corners| super::crossing(ray, corners).is_some())
+            });
+            both.count() as u64
+        };
+        // Each answer but the nearest is wrong, whether it is met or not.
+        let other = |ray: &super::Ray| {
+            let first = super::closest(&grid, &blockers, *ray)?;
+            Some(Some(1 - first.prim))
+        };
+        assert_eq!(unlike(asked, Query::Closest, other), met);
+        assert_eq!(unlike(asked, Query::Any, other), 0, "any will do");
+        assert!(both(asked.answers) > 50, "some pass both sheets");
+        // Segments between random points: neither has anything to err about.
+        assert_eq!(*random.rivals(Query::Any), Compared::default());
+        assert_eq!(*random.rivals(Query::Closest), Compared::default());
+    }
+
+    #[test]
+    fn who_is_too_unlike_is_refused() {
+        let blockers = sheets();
+        let grid = Grid::build(&blockers, Resolution::FromScene, Membership::Box);
+        let grid = grid.expect("within the limits");
+        // Trees of one of both sheets: they miss the other.
+        let other = Blockers {
+            triangles: vec![[0, 1, 2]],
+            ..sheets()
+        };
+        let rivals = Rivals::new(&other).expect("Embree builds");
+        let kinds = Asking::all((&blockers, &grid), 3, (2000, false), &rivals);
+        for asking in &kinds {
+            for query in [Query::Any, Query::Closest] {
+                let Compared { unlike, refused } = asking.rivals(query);
+                assert!(unlike.iter().all(|n| *n > 50), "{unlike:?}");
+                let [embree, obvhs] = refused.each_ref().map(|why| why.as_deref());
+                let embree = embree.expect("misses what it must meet");
+                assert!(embree.starts_with("unlike the spec: "), "{embree}");
+                let obvhs = obvhs.expect("misses what it must meet");
+                assert!(obvhs.contains("of 2000 rays unlike the spec"), "{obvhs}");
+            }
+        }
+    }
+}

@@ -101,3 +101,63 @@ fn levels(rows: &[&Row]) -> Vec<(Option<f64>, String)> {
     };
     of_leg.map(|row| (decibels(row), words(row))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{Machine, Spread};
+    use super::{Frames, Row, svg};
+
+    fn row(leg: &str, kernel: u32, divisor: u32, blur: u32, rmse: f64) -> Row {
+        Row {
+            scene: "rsm/a".to_owned(),
+            leg: leg.to_owned(),
+            clock: "host",
+            kernel,
+            stride: 1,
+            divisor,
+            blur,
+            pixels: 64,
+            blockers: 2,
+            rays: 8,
+            frame: Spread::of([f64::from(kernel)]),
+            parts: Vec::new(),
+            rmse,
+            largest: rmse,
+            own: None,
+        }
+    }
+
+    /// Three lines of a leg, which meet at its own setting: a point of each, and one more of
+    /// kernels, of buffer B, and of blur.
+    #[test]
+    fn sweeps_meet_at_the_own_setting() {
+        let rows = vec![
+            row("spec", 9, 2, 1, 1e-2),
+            row("gpu@<x>", 9, 2, 1, 1e-2),
+            row("gpu@<x>", 5, 2, 1, 1e-1),
+            row("gpu@<x>", 9, 1, 1, 0.0),
+            row("gpu@<x>", 9, 2, 0, 1e-3),
+        ];
+        let text = svg(&Frames {
+            date: "2000-01-02".into(),
+            machine: Machine::default(),
+            runs: 1,
+            rows,
+            remarks: Vec::new(),
+        });
+        let legend = 2 * 3;
+        assert_eq!(text.matches("<polyline").count(), 2 * 3, "{text}");
+        let marks = text.matches("class=\"mark ").count();
+        assert_eq!(marks, legend + 3 + 3 + 3, "{text}");
+        for words in [
+            ">own<",
+            ">5x5<",
+            ">B 1/1<",
+            ">blur 0<",
+            ">gpu@&lt;x&gt;: blur<",
+        ] {
+            assert!(text.contains(words), "no {words} in {text}");
+        }
+        assert!(!text.contains("NaN") && !text.contains("inf\""), "{text}");
+    }
+}
