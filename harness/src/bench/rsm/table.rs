@@ -3,6 +3,7 @@
 use super::super::csv::number;
 use super::super::table::{mebibytes, spread};
 use super::super::{WARM_UP, markdown};
+use super::judge::SAMPLE;
 use super::{Frames, OfAdapter, Row};
 use crate::text::{clean, markdown as text, quoted};
 
@@ -137,7 +138,13 @@ fn how(runs: u32) -> String {
          their search, blocked light), *compose* (blur\nand picture). *Kernel*: texels of the \
          light's map; *B*: its pixels to the picture's along x and y. *RMSE* and *largest*: \
          linear\ndifference from the scene's own kernel with every pixel's own rays by Embree and \
-         no blur."
+         no blur.\n*Lit otherwise*: pixels at the border of a shadow whose place in the lamp's map \
+         follows from the device's own point; it is\nlit where the spec's is not, or the reverse, and \
+         is as far off as direct light is bright; *elsewhere* is *largest* without them.\nThis \
+         does not hide an error: what an adapter makes of its own points is compared with what the \
+         spec makes of them, before it\nis timed, at each pixel, but for stages gather and block (*A* \
+         and *B*), of which at most {SAMPLE} pixels of B are looked at.\n*Memory*: the buffers that \
+         stages share, the blockers and their grid among them, without the triangles that are drawn."
     )
 }
 
