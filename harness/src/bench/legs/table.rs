@@ -25,7 +25,7 @@ pub(super) const NAMES: usize = 4;
 /// The heading and a row's cells, line by line, without columns that are empty in every row.
 pub(super) fn table(legs: &Legs) -> Vec<Vec<String>> {
     let rows: Vec<_> = legs.rows.iter().map(cells).collect();
-    let filled = |at: &usize| rows.iter().any(|row| !row[*at].is_empty());
+    let filled = |at: &usize| *at < NAMES || rows.iter().any(|row| !row[*at].is_empty());
     let kept: Vec<usize> = (0..COLUMNS.len()).filter(filled).collect();
     let heading = COLUMNS.map(str::to_owned);
     let lines = std::iter::once(&heading).chain(&rows);
