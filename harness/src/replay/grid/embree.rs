@@ -5,7 +5,7 @@ use std::time::Instant;
 use triptych_spec::grid::trace::Query;
 
 use super::spec::GridRun;
-use crate::compare::embree::compare_rays;
+use crate::compare::embree::compare_kinds;
 use crate::compare::{Judgement, compare};
 use crate::embree::EmbreeError;
 use crate::embree::rays::RayScene;
@@ -53,7 +53,8 @@ fn ask(
         let start = Instant::now();
         let mut failed = None;
         let judgement = compare(spec, &embree, |spec, scene| {
-            let vote = compare_rays(&spec.grid, &spec.blockers, &spec.rays, query, scene);
+            let GridRun { grid, blockers, .. } = spec;
+            let vote = compare_kinds(grid, blockers, &spec.rays, kinds(spec), query, scene);
             match vote {
                 Ok(vote) => {
                     let judgement = vote.judgement(Some(edge_budget));
@@ -74,4 +75,10 @@ fn ask(
         rows.add("trace", &times, &seen, judgement);
     }
     Ok(())
+}
+
+/// Kinds of rays and where each ends; behind them, those that no scene file can draw.
+fn kinds(spec: &GridRun) -> impl Iterator<Item = (&'static str, usize)> {
+    let names = Kind::ALL.into_iter().map(Kind::name).chain(["own"]);
+    names.zip(spec.ends.into_iter().chain([spec.rays.len()]))
 }
