@@ -92,6 +92,33 @@ fn the_report_shows_a_grid() {
     }
 }
 
+/// Rays of a subgroup go through lists of thousands of needles, each at its own pace, and a driver
+/// that counts the steps of all of them ends their loops early: that is no list without end.
+#[test]
+fn rays_that_wait_for_each_other_take_more_dispatches() {
+    let place = Place::new("grid-needles");
+    let needles = "purpose = 'needles'\nsize = [8, 8]\n[[mesh]]\ngenerate.scatter = { count = 8192, \
+                   extent = [0, 2, 2], length = 0.001, width = 0.0001 }\nscale = [1e6, 1, 1]\n[grid]\n\
+                   resolution = [16, 1, 1]\nrays = { random = 64, aimed = 0, edge = 0, vertex = 0, \
+                   grazing = 0, cell = 0 }\n";
+    place.write("corpus/grid/needles/scene.toml", needles);
+    let on = |adapter| {
+        [
+            "replay",
+            "--leg",
+            "gpu",
+            "--path",
+            "compute",
+            "--adapter",
+            adapter,
+        ]
+    };
+    for adapter in ["llvmpipe", "swiftshader"] {
+        let ran = place.run(&on(adapter)).expect(0);
+        assert!(ran.stdout.contains("All agree: 1 scene"), "{}", ran.stdout);
+    }
+}
+
 /// Options that only rasterised scenes know are told once, and a vote without rays says so.
 #[test]
 fn options_without_effect_are_told_once() {
