@@ -183,7 +183,7 @@ impl<'a> Kernel<'a> {
             };
             let off = [0.0, -time.bound, time.bound][usize::try_from(loose.choose(3)).unwrap()];
             // Within the bound once more, where rounding left it.
-            let time = (time.value + off) as f32;
+            let time = single(time.value + off);
             if found.nearest.is_none_or(|nearest| (time, prim) < nearest) {
                 found.nearest = Some((time, prim));
             }
@@ -227,16 +227,18 @@ impl<'a> Kernel<'a> {
     }
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
+fn single(x: f64) -> f32 {
+    x as f32
+}
+
 fn soonest([x, y, z]: [f32; 3]) -> f32 {
     x.min(y).min(z)
 }
 
 /// The axis of the soonest exit.
 fn first_of([x, y, z]: [f32; 3]) -> usize {
-    if x <= y.min(z) {
-        return 0;
-    }
-    if y <= z { 1 } else { 2 }
+    usize::from(x > y.min(z)) * (1 + usize::from(y > z))
 }
 
 /// Later than anything that a ray meets. Twin: `NEVER` in `march.wgsl`.
@@ -272,7 +274,7 @@ proptest! {
             for prim in 0..u32::try_from(blockers.triangles.len()).unwrap() {
                 let Some(time) = timed(ray, blockers.corners(prim)) else { continue };
                 // `look` rounds once more.
-                let may = (time.value + time.bound) as f32;
+                let may = single(time.value + time.bound);
                 prop_assert!(latest <= f64::from(may), "{:?}: {} for {:?}", ray, latest, time);
             }
         }
