@@ -70,6 +70,28 @@ fn the_papers_set() {
     assert_eq!(counts[..15], upper);
 }
 
+/// Some of the directions that the author's renderer reads from a file, with four digits; those
+/// on the equator are the antipodes of ours.
+#[test]
+fn the_authors_directions() {
+    let set = directions(512).unwrap();
+    for (at, theirs) in [
+        (1, [0.1076, 0.0518, 0.9928]),
+        (9, [0.1959, 0.1207, 0.9732]),
+        (21, [0.3351, -0.0238, 0.9419]),
+        (100, [0.5468, 0.3056, 0.7795]),
+        (300, [-0.6061, -0.6676, 0.4323]),
+        (482, [0.9451, -0.3072, 0.1115]),
+        (483, [-0.9793, 0.2026, 0.0]),
+        (500, [0.0668, -0.9978, 0.0]),
+        (511, [0.9516, -0.3073, 0.0]),
+    ] {
+        let sign = if theirs[2] == 0.0 { -1.0 } else { 1.0 };
+        let off = |i: usize| (set[at][i] - sign * theirs[i]).abs();
+        assert!((0..3).all(|i| off(i) < 1e-4), "{at}: {:?}", set[at]);
+    }
+}
+
 /// A map serves two directions; no two maps serve the same.
 #[test]
 fn no_two_directions_are_one_line() {
