@@ -4,6 +4,7 @@
 //! device made of it. Twin: `spec/src/grid.rs`.
 
 mod device;
+mod room;
 mod stages;
 mod timed;
 
@@ -12,8 +13,8 @@ use triptych_spec::grid::lattice::Point;
 use triptych_spec::grid::ray::Ray;
 
 pub use device::Device;
+pub(crate) use room::Room;
 pub use stages::Stages;
-pub(crate) use timed::Room;
 pub use timed::{Shape, Span, Timed};
 
 /// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.

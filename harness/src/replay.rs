@@ -21,6 +21,7 @@ pub mod skips;
 pub mod spec;
 mod stop;
 pub mod vertex;
+pub mod work;
 pub mod worst;
 
 use triptych_gpu::raster::Path;
@@ -32,6 +33,7 @@ use crate::dump::Dump;
 use crate::error::InputError;
 use crate::plan::Pass;
 pub use crate::plan::passes;
+use crate::registry::{Chain, stages_of};
 use crate::report::Picture;
 use crate::row::{Class, Row};
 use crate::scene::{LoadError, Loaded, load_entry};
@@ -140,9 +142,14 @@ pub fn replay(
     options: &Options,
 ) -> Result<Outcome, InputError> {
     match load_entry(entry, options.seed) {
-        Ok(loaded) => Run::new(&loaded, adapters, options)
-            .all()
-            .map_err(|stop| InputError::new(&entry.path, stop.words())),
+        Ok(loaded) => Run::new(&loaded, adapters, options).all().map_err(|stop| {
+            let mistake = stop.mistake();
+            InputError {
+                file: entry.path.clone(),
+                line: mistake.key.and_then(|key| loaded.lines.of(key)),
+                message: mistake.to_string(),
+            }
+        }),
         Err(LoadError::Input(error)) => Err(error),
         Err(missing @ LoadError::Missing { .. }) => {
             let mut rows = Rows::new(&entry.name, &entry.family);
@@ -163,11 +170,18 @@ pub fn replay_grid(
     options: &Options,
 ) -> Result<Vec<Row>, String> {
     let run = Run::new(loaded, adapters, options).on_grid(spec);
-    let outcome = run.all().map_err(|stop| stop.words())?;
+    let outcome = run.all().map_err(|stop| stop.mistake().to_string())?;
     Ok(outcome.rows)
 }
 
 impl Outcome {
+    /// Whether the scene is not rasterised by drivers: it has a `[grid]` or an `[rsm]`.
+    pub fn runs_kernels_alone(&self) -> bool {
+        let frame: Vec<&str> = stages_of(Chain::Frame).map(|stage| stage.name).collect();
+        let is_of_frame = |pass: &Pass| frame.contains(&pass.name);
+        !self.passes.is_empty() && !self.passes.iter().any(is_of_frame)
+    }
+
     fn empty(entry: &Entry, rows: Rows) -> Self {
         Self {
             name: entry.name.clone(),

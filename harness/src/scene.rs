@@ -5,6 +5,7 @@ pub mod file;
 mod fit;
 mod flatten;
 pub mod grid;
+mod mistake;
 pub mod rsm;
 mod shade;
 mod source;
@@ -24,6 +25,7 @@ use crate::error::InputError;
 use crate::mesh::Intake;
 use crate::text::{self, hex};
 use file::SceneFile;
+pub use mistake::{Lines, Mistake};
 use world::World;
 
 /// Largest scene.toml in bytes. Parsing takes up to a hundred times as much memory.
@@ -51,6 +53,8 @@ pub struct Loaded {
     pub family: String,
     /// The scene as written.
     pub file: SceneFile,
+    /// Where its keys stand.
+    pub lines: Lines,
     /// Whether it is a bare mesh, with everything else by default.
     pub bare: bool,
     /// The scene as the legs see it.
@@ -186,8 +190,10 @@ fn of_parsed(
     let places = parsed.file.expect.check_places(parsed.file.size.0);
     places.map_err(|(span, message)| parsed.error(span, message))?;
     digest.update(parsed.file.seed.to_le_bytes());
+    grid::check(&parsed)?;
     rsm::check(&parsed)?;
     let mut meshes = source::load_all(intake, &parsed, &mut digest)?;
+    rsm::check_meshes(&parsed, &meshes)?;
     let (scene, world) = flatten::flatten(&parsed, &mut meshes)?;
     let mut stats = source::stats(&meshes);
     stats.sha256 = hex(&digest.finalize());
@@ -195,6 +201,7 @@ fn of_parsed(
         name: entry.name.clone(),
         bare: corpus::is_mesh(&entry.path),
         family: entry.family.clone(),
+        lines: parsed.keys,
         file: parsed.file,
         scene,
         world,
@@ -207,6 +214,7 @@ struct Parsed<'a> {
     path: &'a Path,
     /// Byte offset of the start of every line.
     lines: Vec<usize>,
+    keys: Lines,
     file: SceneFile,
 }
 
@@ -235,7 +243,7 @@ pub fn purpose(path: &Path) -> Result<String, InputError> {
 fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
     let starts = text.match_indices('\n').map(|(at, _)| at + 1);
     let lines: Vec<usize> = std::iter::once(0).chain(starts).collect();
-    let file = toml::from_str(text).map_err(|e| {
+    let file: SceneFile = toml::from_str(text).map_err(|e| {
         let line = e.span().map(|span| line_of(&lines, span.start));
         InputError {
             file: path.to_owned(),
@@ -249,7 +257,17 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
             },
         }
     })?;
-    Ok(Parsed { path, lines, file })
+    // Other families are judged where they are read, and a bare mesh has no lines.
+    let keys = match file.grid.is_some() || file.rsm.is_some() {
+        true => Lines::new(text, |at| line_of(&lines, at)),
+        false => Lines::default(),
+    };
+    Ok(Parsed {
+        path,
+        lines,
+        keys,
+        file,
+    })
 }
 
 /// The line, from 1, that holds a byte.

@@ -123,9 +123,23 @@ fn frames_are_measured() {
         "frame", "eye", "map", "cells", "direct", "A", "B", "compose",
     ];
     assert_eq!(parts, all);
+    for row in rows.iter().filter(|row| row["part"] == "frame") {
+        let of_adapter = row["leg"] != "spec";
+        let number = |column: &str| row[column].parse::<f64>().ok();
+        // 384 pixels have points of 16 bytes at least.
+        let memory = number("memory_bytes").map(|bytes| bytes > 16.0 * 384.0);
+        assert_eq!(memory, of_adapter.then_some(true), "{row:?}");
+        let elsewhere = number("largest_elsewhere");
+        assert_eq!(elsewhere.is_some(), of_adapter, "{row:?}");
+        assert!(elsewhere <= number("largest"), "{row:?}");
+    }
     let page = only(&place.root.join("t"), "md");
-    for words in ["# Indirect light", "| 7x7 | 1/1 | 0 |", "*RMSE*"] {
+    for words in ["# Indirect light", "| 7x7 | 1/1 | 0 |", "*RMSE*", ".svg)"] {
         assert!(page.contains(words), "no {words} in {page}");
+    }
+    let front = only(&place.root.join("t"), "svg");
+    for words in ["gpu@SwiftShader: buffer B", ">own<"] {
+        assert!(front.contains(words), "no {words} in {front}");
     }
 }
 
@@ -150,7 +164,7 @@ fn what_is_not_measured_is_said() {
 }
 
 /// The one file with this end.
-fn only(folder: &Path, end: &str) -> String {
+pub(super) fn only(folder: &Path, end: &str) -> String {
     let files = fs::read_dir(folder).expect("a folder");
     let files = files.map(|file| file.expect("a file").path());
     let own: Vec<_> = files
@@ -162,7 +176,7 @@ fn only(folder: &Path, end: &str) -> String {
     fs::read_to_string(file).expect("text")
 }
 
-fn rows(csv: &str) -> Vec<BTreeMap<&str, &str>> {
+pub(super) fn rows(csv: &str) -> Vec<BTreeMap<&str, &str>> {
     let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().expect("a header");
     let row = |line: Vec<_>| {
@@ -173,7 +187,7 @@ fn rows(csv: &str) -> Vec<BTreeMap<&str, &str>> {
 }
 
 /// A lamp on a wall, a floor that the wall lights, and a box before it that moves.
-const WALL: &str = r#"
+pub(super) const WALL: &str = r#"
 purpose = "a wall lights a floor past a box that moves"
 size = [24, 16]
 [camera]

@@ -92,7 +92,61 @@ fn the_report_shows_a_grid() {
     }
 }
 
-/// Two quads that block rays.
+/// Rays of a subgroup go through lists of thousands of needles, each at its own pace, and a driver
+/// that counts the steps of all of them ends their loops early: that is no list without end.
+#[test]
+fn rays_that_wait_for_each_other_take_more_dispatches() {
+    let place = Place::new("grid-needles");
+    let needles = "purpose = 'needles'\nsize = [8, 8]\n[[mesh]]\ngenerate.scatter = { count = 8192, \
+                   extent = [0, 2, 2], length = 0.001, width = 0.0001 }\nscale = [1e6, 1, 1]\n[grid]\n\
+                   resolution = [16, 1, 1]\nrays = { random = 64, aimed = 0, edge = 0, vertex = 0, \
+                   grazing = 0, cell = 0 }\n";
+    place.write("corpus/grid/needles/scene.toml", needles);
+    let on = |adapter| {
+        [
+            "replay",
+            "--leg",
+            "gpu",
+            "--path",
+            "compute",
+            "--adapter",
+            adapter,
+        ]
+    };
+    for adapter in ["llvmpipe", "swiftshader"] {
+        let ran = place.run(&on(adapter)).expect(0);
+        assert!(ran.stdout.contains("All agree: 1 scene"), "{}", ran.stdout);
+    }
+}
+
+/// Options that only rasterised scenes know are told once, and a vote without rays says so.
+#[test]
+fn options_without_effect_are_told_once() {
+    let place = Place::new("grid-options");
+    let unasked = GRID.replace("= 50", "= 0");
+    place
+        .write("corpus/grid/quads/scene.toml", GRID)
+        .write("corpus/grid/twice/scene.toml", GRID)
+        .write("corpus/grid/unasked/scene.toml", &unasked);
+    let told = "without effect on scenes with [grid] or [rsm]: ";
+    for (options, said) in [
+        (&[][..], None),
+        (&["--gpu-from", "sort"], Some("--gpu-from")),
+        (&["--vertex", "gpu"], Some("--vertex")),
+    ] {
+        let arguments = [&["replay", "--leg", "embree"], options].concat();
+        let ran = place.run(&arguments).expect(0);
+        let all = format!("{}{}", ran.stdout, ran.stderr);
+        assert_eq!(all.matches(told).count(), said.iter().len(), "{all}");
+        assert!(
+            said.is_none_or(|said| all.contains(&format!("{told}{said}\n"))),
+            "{all}"
+        );
+        assert!(all.contains("no ray is asked for"), "{all}");
+    }
+}
+
+/// Two quads that block rays, as a newcomer writes it: without a budget.
 const GRID: &str = r#"
 purpose = "two quads across the way of rays"
 size = [8, 8]
@@ -101,6 +155,4 @@ generate.stack = { layers = 2, size = [4, 4], spacing = 1 }
 [grid]
 resolution = [4, 4, 2]
 rays = { random = 50, aimed = 50, edge = 50, vertex = 50, grazing = 50, cell = 50 }
-[budget]
-edge = 1
 "#;

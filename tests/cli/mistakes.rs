@@ -164,6 +164,55 @@ fn files_that_cannot_be_written_or_read() {
     assert_parts(&only(&place, &["report", "bad.json"]), &["bad.json:1: "]);
 }
 
+/// What only a scene's geometry brings out has its key and line as well.
+#[test]
+fn scenes_beyond_a_limit_of_their_family() {
+    let place = Place::new("beyond");
+    let start = "purpose = 'x'\nsize = [8, 8]\n";
+    let quads = "[[mesh]]\ngenerate.stack = { layers = 2, size = [4, 4], spacing = 1 }\n";
+    let lamp = "rsm.lamp = { eye = [0, 0, 3], target = [0, 0, 0], fov = 40, near = 1, far = 9 }\n";
+    let of = |keys: &str| format!("{start}{lamp}{keys}{quads}");
+    let rays = ["random", "aimed", "edge", "vertex", "grazing", "cell"];
+    let rays = rays.map(|kind| format!("{kind} = 2097152")).join(", ");
+    let long = quads
+        .replace("layers = 2", "layers = 4096")
+        .replace("spacing = 1", "spacing = 0.0001");
+    let grid = format!("{start}{long}[grid]\nresolution = [1, 1, 1]\nrays = {{ {rays} }}\n");
+    place
+        .write("clamp/scene.toml", &of("rsm.clamp = 1e300\n"))
+        .write("far/scene.toml", &of("rsm.reference = 1e300\n"))
+        .write("rays/scene.toml", &grid);
+    for (scene, parts) in [
+        (
+            "clamp",
+            [
+                "clamp/scene.toml:4: rsm.clamp: 1e300 is outside 0 to ",
+                "the lattice's diagonal",
+            ],
+        ),
+        (
+            "far",
+            [
+                "far/scene.toml:4: rsm.reference: a strength of ",
+                "a smaller strength, is right",
+            ],
+        ),
+        (
+            "rays",
+            [
+                "rays/scene.toml:7: grid.rays: 12582912 rays pass more than ",
+                "ask for fewer rays",
+            ],
+        ),
+    ] {
+        let path = format!("{scene}/scene.toml");
+        assert_parts(
+            &mistake(&place, &["replay", "--leg", "spec", &path]),
+            &parts,
+        );
+    }
+}
+
 /// Counting what is not judged is no comparison, and neither is a leg that does not run.
 #[test]
 fn nothing_judged_is_no_success() {

@@ -9,7 +9,11 @@ use triptych_harness::corpus::Entry;
 use triptych_harness::error::InputError;
 use triptych_harness::json::{self, Merged};
 use triptych_harness::mesh::{self, Intake, Mesh};
-use triptych_harness::scene::{self, LoadError, Loaded};
+use triptych_harness::rays::Kind;
+use triptych_harness::registry::Chain;
+use triptych_harness::replay::grid::{GridRun, blockers};
+use triptych_harness::replay::rsm::{RsmRun, Setup};
+use triptych_harness::scene::{self, LoadError, Loaded, Mistake};
 
 #[path = "../hostile/sound.rs"]
 mod sound;
@@ -88,9 +92,53 @@ pub fn judge_mesh(loaded: Result<Mesh, InputError>) {
 /// The same of a scene.
 pub fn judge_scene(loaded: Result<Loaded, LoadError>) {
     match loaded {
-        Ok(loaded) => assert_finite(&loaded),
+        Ok(loaded) => {
+            assert_finite(&loaded);
+            let replayed = match loaded.chain() {
+                Chain::Frame => Ok(()),
+                Chain::Rays => rays(&loaded),
+                Chain::Indirect => indirect(&loaded),
+            };
+            replayed.err().iter().for_each(one_line);
+        }
         Err(error) => one_line(error),
     }
+}
+
+/// What the spec makes of a grid: a lattice, and where it takes no time, lists and hits.
+fn rays(loaded: &Loaded) -> Result<(), Mistake> {
+    blockers(loaded)?;
+    let grid = loaded.file.grid.unwrap_or_default();
+    let cells = grid.resolution.map_or([1; 3], |cells| cells.0);
+    let rays: u64 = Kind::ALL
+        .iter()
+        .map(|kind| u64::from(kind.count(&grid.rays)))
+        .sum();
+    let cells: u64 = cells.into_iter().map(u64::from).product();
+    if loaded.scene.triangles.len() > 64 || rays > 2048 || cells > 4096 {
+        return Ok(());
+    }
+    let run = GridRun::new(loaded)?;
+    assert_eq!(run.rays.len(), run.answers.len(), "an answer to each ray");
+    Ok(())
+}
+
+/// The same of indirect light: a lattice with cameras and lengths on it, and frames.
+fn indirect(loaded: &Loaded) -> Result<(), Mistake> {
+    let setup = Setup::new(loaded)?;
+    let side = u64::from(setup.parameters.side());
+    let pixels = setup.eye.size.pixels() as u64;
+    let texels = setup.lamp.view.size.pixels() as u64;
+    let pairs = u64::from(setup.frames) * pixels * side * side;
+    if loaded.scene.triangles.len() > 64 || pairs > 1 << 16 || texels > 1 << 14 {
+        return Ok(());
+    }
+    let run = RsmRun::new(loaded, true)?;
+    for frame in &run.frames {
+        let numbers = frame.frame.picture.iter().flatten();
+        assert!(numbers.into_iter().all(|c| !c.value.is_nan()), "a colour");
+    }
+    Ok(())
 }
 
 /// No leg is ever handed a corner or a colour that is not a number.

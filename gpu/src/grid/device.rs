@@ -82,6 +82,12 @@ impl<'g> Device<'g> {
         sides.into_iter().map(|cells| cells.div_ceil(4)).product()
     }
 
+    /// Bytes of triangles and boundaries, and of what else a build needs.
+    pub(super) fn bytes(&self, build: bool) -> u64 {
+        let of_build = if build { self.chunks.size() } else { 0 };
+        self.corners.size() + self.boundaries.size() + of_build
+    }
+
     /// One invocation for each item.
     pub(super) fn each(
         &self,

@@ -192,11 +192,15 @@ impl<'g> Stages<'g> {
     }
 
     /// Dispatches after which every ray is done: it passes a cell once, and with it each entry;
-    /// where a dispatch ends, a cell may be looked at again.
+    /// where a dispatch ends, a cell may be looked at again. llvmpipe counts the iterations of a
+    /// whole subgroup, whose rays wait for each other, and leaves all loops after 65,535. So a
+    /// dispatch takes one of them `STEPS` on, or all together as many: it is as if they came one
+    /// after another.
     fn rounds(&self) -> u64 {
         let cells = u64::from(self.device.cells.x + self.device.cells.y + self.device.cells.z);
         let entries = self.prims.size() / 4;
-        (cells + entries).div_ceil(u64::from(STEPS - 1)) + 1
+        let lanes = u64::from(self.device.gpu.info.subgroup_max_size.max(1));
+        lanes * ((cells + entries).div_ceil(u64::from(STEPS - 1)) + 1)
     }
 
     fn trace_part(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {

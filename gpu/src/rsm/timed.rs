@@ -64,6 +64,9 @@ pub struct Timed<'g> {
     pub(super) spans: Vec<(Span, Vec<Step>)>,
     /// Rays of a frame.
     pub rays: u32,
+    /// Bytes of the buffers that its stages share, the blockers and their grid among them;
+    /// without the triangles that are drawn.
+    pub bytes: u64,
 }
 
 /// What a frame is made of, and how.
@@ -96,6 +99,7 @@ impl<'g> Timed<'g> {
             gpu,
             device,
             rasterizers,
+            bytes: buffers.iter().map(|(_, buffer)| buffer.size()).sum(),
             buffers,
             spans: Vec::new(),
             rays: 0,
@@ -107,6 +111,7 @@ impl<'g> Timed<'g> {
             Some(shape) => {
                 let (blockers, axes) = (work.setting.blockers, &work.setting.grid.axes);
                 let room = Room::new(gpu, kernels, blockers, axes, shape)?;
+                timed.bytes += room.bytes(true);
                 let build = room.build(shape)?.into_iter().map(Step::Pass).collect();
                 timed.spans.push((Span::Cells, build));
                 Some((room, shape))

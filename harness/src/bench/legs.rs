@@ -78,6 +78,19 @@ pub struct Row {
     pub time: Spread,
     /// What it is held against; `None`: it is what others are held against.
     pub against: Option<Against>,
+    /// What else is known.
+    pub more: More,
+}
+
+/// What is known of some legs beside their times.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct More {
+    /// Bytes that it works on.
+    pub memory: Option<u64>,
+    /// What bounds it, and the time that this allows at least over the median.
+    pub bound: Option<(&'static str, f64)>,
+    /// Items that it decides unlike the spec, of those that it was asked for beforehand.
+    pub unlike: Option<[u64; 2]>,
 }
 
 /// A leg beside another.
@@ -111,6 +124,7 @@ pub(super) struct Taken {
     clock: &'static str,
     items: u64,
     pub(super) seconds: Vec<f64>,
+    pub(super) more: More,
 }
 
 impl Taken {
@@ -120,7 +134,13 @@ impl Taken {
             clock,
             items,
             seconds: Vec::new(),
+            more: More::default(),
         }
+    }
+
+    /// The median.
+    pub(super) fn median(&self) -> f64 {
+        Spread::of(self.seconds.iter().copied()).median
     }
 
     /// Times of an item over the other's.
@@ -148,6 +168,7 @@ impl Taken {
                 ratio: self.over(other),
                 most,
             }),
+            more: self.more,
         }
     }
 }

@@ -1,15 +1,16 @@
-//! The front: time against error, a panel for each scene, a line for each leg.
+//! The front: time against error, a panel for each scene, a line for each leg, or several.
 //!
 //! Right and down is worse. Time is logarithmic. Above [`ROUNDING`] decibels only
 //! rounding is left, and such points, and exact ones, lie on one line at the top.
 //! Lines differ in colour, and their points in shape.
 
+mod abuffer;
 mod axis;
 mod mark;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::{Bench, Row};
+use super::Bench;
 use crate::text::clean;
 use axis::{Horizontal, Vertical};
 use mark::mark;
@@ -55,42 +56,67 @@ const STYLE: &str = "
 }
 ";
 
-/// The front by itself, as a file.
-pub fn file(bench: &Bench) -> String {
+/// What a front shows.
+pub(super) struct Plot {
+    /// Above it.
+    pub(super) title: String,
+    /// For those who do not see it.
+    pub(super) words: String,
+    /// Under the title: when and where.
+    pub(super) place: String,
+    /// What a line of the legend each stands for; the numbers of [`Line::style`].
+    pub(super) legend: Vec<String>,
+    /// One below the other.
+    pub(super) panels: Vec<Panel>,
+}
+
+/// A scene.
+pub(super) struct Panel {
+    pub(super) heading: String,
+    pub(super) lines: Vec<Line>,
+    /// Names of errors, beside them; of those that would overlap the first is shown.
+    pub(super) levels: Vec<(Option<f64>, String)>,
+}
+
+/// Points of a leg, in order: milliseconds, and decibels unless it is exact.
+pub(super) struct Line {
+    pub(super) style: usize,
+    pub(super) points: Vec<(f64, Option<f64>)>,
+}
+
+/// A front by itself, as a file.
+pub(super) fn alone(plot: &Plot) -> String {
     let space = "http://www.w3.org/2000/svg";
-    format!("{}\n", front(bench, Some(space)).into_string())
+    format!("{}\n", front(plot, Some(space)).into_string())
 }
 
-/// The front as an element of a page, which knows what an SVG is.
+/// The front of a run of `bench abuffer`, as a file.
+pub fn file(bench: &Bench) -> String {
+    alone(&abuffer::plot(bench))
+}
+
+/// The same as an element of a page, which knows what an SVG is.
 pub fn element(bench: &Bench) -> Markup {
-    front(bench, None)
+    front(&abuffer::plot(bench), None)
 }
 
-fn front(bench: &Bench, space: Option<&str>) -> Markup {
-    let legs = bench.legs();
-    let legend = LEGEND_LINE * legs.len().div_ceil(LEGEND_COLUMNS) as f64;
+fn front(plot: &Plot, space: Option<&str>) -> Markup {
+    let legend = LEGEND_LINE * plot.legend.len().div_ceil(LEGEND_COLUMNS) as f64;
     let top = 60.0 + legend;
-    let scenes = bench.scenes();
-    let height = top + PANEL * scenes.len() as f64;
-    let words = format!(
-        "Time against error of the A-buffer with 1, 2, 4, … nearest layers, {}, {}",
-        bench.date, bench.machine.slug
-    );
+    let height = top + PANEL * plot.panels.len() as f64;
     html! {
         svg.front xmlns=[space] role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
-            title { (clean(&words)) }
+            title { (clean(&plot.words)) }
             style { (PreEscaped(STYLE)) }
             rect.ground width=(WIDTH) height=(height) {}
-            text x="24" y="28" font-size="17" font-weight="600" { "Time against error: A-buffer, nearest layers" }
-            text.soft x="24" y="46" { (clean(&format!("{}, {}", bench.date, bench.machine.cpu))) }
+            text x="24" y="28" font-size="17" font-weight="600" { (plot.title) }
+            text.soft x="24" y="46" { (clean(&plot.place)) }
             text.soft x=(RIGHT) y="46" text-anchor="end" {
                 "exact*: equal, or unequal by rounding alone (above 100 dB)"
             }
-            @for (at, leg) in legs.iter().enumerate() { (entry(at, leg)) }
-            @for (at, scene) in scenes.iter().enumerate() {
-                g transform=(format!("translate(0 {})", top + PANEL * at as f64)) {
-                    (panel(bench, &legs, scene))
-                }
+            @for (at, leg) in plot.legend.iter().enumerate() { (entry(at, leg)) }
+            @for (at, own) in plot.panels.iter().enumerate() {
+                g transform=(format!("translate(0 {})", top + PANEL * at as f64)) { (panel(own)) }
             }
         }
     }
@@ -108,43 +134,31 @@ fn entry(at: usize, leg: &str) -> Markup {
     }
 }
 
-fn panel(bench: &Bench, legs: &[&str], scene: &str) -> Markup {
-    let rows: Vec<&Row> = bench.fastest().filter(|row| row.scene == scene).collect();
-    let times = Horizontal::of(rows.iter().map(|r| r.time.median), [LEFT, RIGHT]);
-    let errors = Vertical::of(rows.iter().map(|r| r.psnr), PLOT);
-    let at = |row: &Row| [times.at(row.time.median), errors.at(row.psnr)];
+fn panel(panel: &Panel) -> Markup {
+    let points = || panel.lines.iter().flat_map(|line| &line.points);
+    let times = Horizontal::of(points().map(|(time, _)| *time), [LEFT, RIGHT]);
+    let errors = Vertical::of(points().map(|(_, error)| *error), PLOT);
+    let at = |(time, error): &(f64, Option<f64>)| [times.at(*time), errors.at(*error)];
     html! {
-        text x="24" y="20" font-weight="600" { (clean(&super::table::heading(bench, scene))) }
+        text x="24" y="20" font-weight="600" { (clean(&panel.heading)) }
         text.soft x="24" y="40" { "PSNR, dB" }
         (errors.grid([LEFT, RIGHT]))
         (times.grid(PLOT))
-        (levels(&rows, &errors))
-        @for (number, leg) in legs.iter().enumerate() {
-            @let own: Vec<&Row> = rows.iter().copied().filter(|row| row.leg == *leg).collect();
-            @let points: Vec<String> = own.iter().map(|r| at(r)).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-            polyline class=(format!("line s{}", number % STYLES)) points=(points.join(" ")) {}
-            @for row in own { (mark(number % STYLES, at(row))) }
+        (levels(&panel.levels, &errors))
+        @for line in &panel.lines {
+            @let style = line.style % STYLES;
+            @let points: Vec<String> = line.points.iter().map(at).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+            polyline class=(format!("line s{style}")) points=(points.join(" ")) {}
+            @for point in &line.points { (mark(style, at(point))) }
         }
     }
 }
 
-/// The numbers of layers, beside where the first leg's points lie; of those that would
-/// overlap, not all.
-fn levels(rows: &[&Row], errors: &Vertical) -> Markup {
-    let leg = rows.first().map(|row| row.leg.as_str());
-    let own = rows.iter().filter(|row| Some(row.leg.as_str()) == leg);
-    let mut shown: Vec<(f64, String)> = Vec::new();
-    // All layers first, then one, then the others from there on.
-    let mut own: Vec<&&Row> = own.collect();
-    own.sort_by_key(|row| (!row.all, row.layers));
-    for row in own {
-        let y = errors.at(row.psnr);
+fn levels(named: &[(Option<f64>, String)], errors: &Vertical) -> Markup {
+    let mut shown: Vec<(f64, &String)> = Vec::new();
+    for (error, words) in named {
+        let y = errors.at(*error);
         if shown.iter().all(|(other, _)| (other - y).abs() >= 12.0) {
-            let words = match (row.all, row.layers) {
-                (true, n) => format!("all {n}"),
-                (false, 1) => "1 layer".to_owned(),
-                (false, n) => n.to_string(),
-            };
             shown.push((y, words));
         }
     }

@@ -32,10 +32,15 @@ pub fn cells(row: &Row) -> [String; COLUMNS.len()] {
             0.0 => "0".to_owned(),
             largest => format!("{largest:.1e}"),
         },
-        format!("{:.1} MiB", row.memory as f64 / f64::from(1 << 20)),
+        mebibytes(row.memory),
         format!("{:.1} M", row.fragments_per_second * 1e-6),
         format!("{} {}", share(row.fraction), row.bound),
     ]
+}
+
+/// Bytes in MiB.
+pub(super) fn mebibytes(bytes: u64) -> String {
+    format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
 /// `median [min, max]`.
@@ -88,18 +93,21 @@ pub fn lines(bench: &Bench) -> Vec<String> {
 
 /// A table in columns as wide as their cells; the first `names` are words, the others
 /// numbers.
-pub(super) fn aligned<const N: usize>(
-    table: &[[String; N]],
+pub(super) fn aligned<T: AsRef<[String]>>(
+    table: &[T],
     names: usize,
 ) -> impl Iterator<Item = String> {
     let width = |column: usize| {
-        let cells = table.iter().map(|cells| cells[column].chars().count());
+        let cells = table
+            .iter()
+            .map(|cells| cells.as_ref()[column].chars().count());
         cells.max().unwrap_or(0)
     };
-    let widths: Vec<usize> = (0..N).map(width).collect();
+    let columns = table.first().map_or(0, |cells| cells.as_ref().len());
+    let widths: Vec<usize> = (0..columns).map(width).collect();
     table.iter().map(move |cells| {
         let mut line = String::new();
-        for (column, (cell, width)) in cells.iter().zip(&widths).enumerate() {
+        for (column, (cell, width)) in cells.as_ref().iter().zip(&widths).enumerate() {
             line += &match column < names {
                 true => format!("  {cell:<width$}"),
                 false => format!("  {cell:>width$}"),

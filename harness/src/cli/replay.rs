@@ -58,10 +58,16 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         results.reporter.remark(&remark)?;
     }
     let mut unreadable = Vec::new();
+    let mut idle = args.of_frames_alone();
     for entry in &selected {
         results.reporter.scene_started(&entry.name);
         match replay(entry, &adapters, &options) {
             Ok(outcome) => {
+                if let Some(options) = idle.take_if(|_| outcome.runs_kernels_alone()) {
+                    let remark =
+                        format!("without effect on scenes with [grid] or [rsm]: {options}");
+                    results.reporter.remark(&remark)?;
+                }
                 if args.snapshot {
                     leave_snapshot(entry, &outcome, &mut results)?;
                 }

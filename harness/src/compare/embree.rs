@@ -45,7 +45,7 @@ use band::judge;
 use known::Shares;
 pub use pair::{DepthPair, Pair, pair};
 use pairs::Pairs;
-pub use rays::{RayConflict, RayDisagreement, RayVote, compare_rays};
+pub use rays::{OfKind, RayConflict, RayDisagreement, RayVote, compare_kinds, compare_rays};
 use screen::Screen;
 pub use vote::{Conflict, Disagreement, EmbreeVote};
 use world::InWorld;

@@ -5,14 +5,17 @@
 //! asks for the device's error after every ray. Rays through blockers ([`super::rays`]) are
 //! asked here as well: the wrapper has no room for a closest hit, and no `rtcOccluded1`.
 
+use std::ffi::c_void;
 use std::ptr;
+use std::sync::atomic::{AtomicIsize, Ordering};
 
 use embree4_sys::{
     RTC_INVALID_GEOMETRY_ID, RTCBufferType, RTCDevice, RTCError, RTCFormat, RTCGeometry,
     RTCGeometryType, RTCHit, RTCRay, RTCRayHit, RTCScene, rtcAttachGeometry, rtcCommitGeometry,
     rtcCommitScene, rtcGetDeviceError, rtcIntersect1, rtcNewDevice, rtcNewGeometry, rtcNewScene,
-    rtcOccluded1, rtcReleaseDevice, rtcReleaseGeometry, rtcReleaseScene, rtcSetNewGeometryBuffer,
-    rtcSetSceneBuildQuality, rtcSetSceneFlags,
+    rtcOccluded1, rtcReleaseDevice, rtcReleaseGeometry, rtcReleaseScene,
+    rtcSetDeviceMemoryMonitorFunction, rtcSetNewGeometryBuffer, rtcSetSceneBuildQuality,
+    rtcSetSceneFlags,
 };
 use triptych_spec::vertex::Primitives;
 
@@ -24,6 +27,8 @@ use super::scene::{Depth, Hit, corners, ray};
 pub struct Bare {
     device: RTCDevice,
     scene: RTCScene,
+    /// Bytes that Embree holds; where they are, it remembers as long as the device lives.
+    held: Box<AtomicIsize>,
 }
 
 /// A ray with room for its hit: since 4.4 Embree's own is four bytes longer than that of
@@ -73,14 +78,21 @@ impl Bare {
         // SAFETY: CONFIG ends in NUL. `bare` owns device and scene from where they are made.
         // What Embree gives without an error is not null. The geometry is released here,
         // once, as the scene keeps a reference of its own; its items are what `copy` is told,
-        // and name corners that are there.
+        // and name corners that are there. `held` stays where it is until the device is gone.
         unsafe {
             let device = rtcNewDevice(CONFIG.as_ptr().cast());
             if device.is_null() {
                 return Err(EmbreeError::new("new device", "refused on this machine"));
             }
+            let held = Box::new(AtomicIsize::new(0));
+            let counter = ptr::from_ref(&*held).cast_mut().cast();
+            rtcSetDeviceMemoryMonitorFunction(device, Some(counts), counter);
             let scene = rtcNewScene(device);
-            let bare = Self { device, scene };
+            let bare = Self {
+                device,
+                scene,
+                held,
+            };
             bare.check()?;
             let mesh = rtcNewGeometry(device, RTCGeometryType::TRIANGLE);
             bare.check()?;
@@ -100,6 +112,11 @@ impl Bare {
                 false => Err(EmbreeError::new("copy of the triangles", "no memory")),
             }
         }
+    }
+
+    /// Bytes that Embree has taken for buffers and tree, and not given back.
+    pub fn bytes(&self) -> u64 {
+        u64::try_from(self.held.load(Ordering::Relaxed)).unwrap_or(0)
     }
 
     /// One call: every hit of the ray through a pixel's sample is added to `hits`, in the
@@ -156,6 +173,18 @@ impl Bare {
             error => Err(EmbreeError::new("rays or triangles", format!("{error:?}"))),
         }
     }
+}
+
+/// Embree takes memory, or gives it back; true: it may.
+///
+/// # Safety
+/// `counter` is an [`AtomicIsize`] that outlives the device.
+#[expect(unsafe_code, reason = "a foreign interface")]
+unsafe extern "C" fn counts(counter: *mut c_void, bytes: isize, _post: bool) -> bool {
+    // SAFETY: as above; nothing else than loads and additions is done to it.
+    let held = unsafe { &*counter.cast::<AtomicIsize>() };
+    held.fetch_add(bytes, Ordering::Relaxed);
+    true
 }
 
 /// Copies items into a new buffer of a geometry; false if Embree gives none.

@@ -57,6 +57,11 @@ impl RayScene {
             scene: scene.transpose()?,
         })
     }
+
+    /// Bytes that Embree holds for it.
+    pub fn bytes(&self) -> u64 {
+        self.scene.as_ref().map_or(0, Bare::bytes)
+    }
 }
 
 impl RayAnswers for RayScene {

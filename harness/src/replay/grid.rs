@@ -5,6 +5,8 @@ mod gpu;
 mod own;
 mod pictures;
 mod spec;
+#[cfg(test)]
+mod tests;
 mod view;
 
 use std::sync::Arc;
@@ -40,8 +42,15 @@ impl Run<'_> {
             let spec = run.grid_spec()?;
             run.facts = Some(Facts::of_grid(run.loaded, &spec.value, run.options.skip));
             if run.shows_grid() {
-                let shown = pictures::spec(&spec.value, &run.loaded.scene);
-                run.pictures.extend(shown);
+                match pictures::spec(&spec.value, &run.loaded.scene) {
+                    Some(shown) => run.pictures.extend(shown),
+                    None => run.remarks.push(format!(
+                        "{}: no pictures, as their rays would pass more than {} cells and triangles \
+                         in their lists",
+                        run.loaded.name,
+                        view::MOST
+                    )),
+                }
             }
             run.dump_grid_spec(&spec).map_err(Stop::Dump)
         })?;
@@ -65,13 +74,12 @@ impl Run<'_> {
             return Ok(());
         }
         let spec = self.grid_spec()?;
-        // A bare mesh states no budget: its share is printed, not judged.
-        let stated = self.loaded.file.budget.edge.0;
-        let budget = (!self.loaded.bare).then_some(stated);
+        let stated = self.loaded.file.budget.edge.map(|share| share.0);
+        let budget = stated.unwrap_or_else(|| embree::drawn_for_edges(&spec.value));
         embree::run(&spec, budget, &mut self.rows);
         if self.shows_grid() {
             match pictures::embree(&spec.value, &self.loaded.scene) {
-                Ok(picture) => self.pictures.push(picture),
+                Ok(picture) => self.pictures.extend(picture),
                 Err(error) => {
                     let words = error.to_string();
                     self.rows.fail("trace", "spec", "embree", None, words);

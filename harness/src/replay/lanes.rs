@@ -239,7 +239,8 @@ impl<'a> Run<'a> {
         let (positions, transform) = timed(|| vertex::transform(scene));
         let (polygons, clip) = timed(|| vertex::clip(scene, &positions));
         let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
-        let mut run = SpecRun::new(scene, primitives, &self.plan).map_err(Stop::Input)?;
+        let mut run = SpecRun::new(scene, primitives, &self.plan)
+            .map_err(|words| Stop::Input(words.into()))?;
         run.times = Times {
             transform,
             clip,

@@ -4,11 +4,13 @@ mod embree;
 mod facts;
 mod gpu;
 mod kernel;
+mod limits;
 mod pictures;
 mod setup;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod told;
 
 use std::collections::BTreeSet;
 
@@ -30,7 +32,7 @@ pub use embree::{reference, values};
 pub use gpu::RsmLeg;
 pub(super) use gpu::rounded;
 pub use setup::{Parts, Setup};
-pub use spec::{RsmFrame, RsmRun, Times, WORK_MAX};
+pub use spec::{RsmFrame, RsmRun, Times};
 
 impl Run<'_> {
     /// The spec by itself, Embree, then every adapter.
@@ -116,7 +118,7 @@ impl Run<'_> {
             }
         };
         // A bare mesh has no [rsm], so there is always a budget.
-        let budget = self.loaded.file.budget.edge.0;
+        let budget = self.loaded.file.budget.edge();
         let judgement = compare(&spec, &seen, |run, seen| judge(run, seen, budget));
         let times = spec.map(|_| ()).taking(run.time(|times| times.block));
         let taken = seen.value.iter().map(|seen| seen.time).sum();

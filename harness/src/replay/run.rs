@@ -241,7 +241,7 @@ impl<'a> Run<'a> {
         let spec = self.spec(SUBPIXEL_BITS)?;
         // A bare mesh states no budget: its share is printed, not judged.
         let stated = &self.loaded.file.budget;
-        let budget = (!self.loaded.bare).then_some(stated.edge.0);
+        let budget = (!self.loaded.bare).then(|| stated.edge());
         let seen = embree::run(&spec, budget, &mut self.rows);
         if let Some((embree, unlike)) = seen.filter(|_| self.options.pictures) {
             let (scene, spec) = (&self.loaded.scene, &spec.value);

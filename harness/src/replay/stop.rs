@@ -1,19 +1,21 @@
 //! Why a replay ends before its end.
 
+use crate::scene::Mistake;
+
 /// Why a replay ends early.
 pub(super) enum Stop {
     /// Bad input.
-    Input(String),
+    Input(Mistake),
     /// A dump that cannot be written.
     Dump(std::io::Error),
 }
 
 impl Stop {
-    /// In one line.
-    pub(super) fn words(self) -> String {
+    /// In one line, with the key that is to blame.
+    pub(super) fn mistake(self) -> Mistake {
         match self {
-            Self::Input(message) => message,
-            Self::Dump(error) => format!("dump: {error}"),
+            Self::Input(mistake) => mistake,
+            Self::Dump(error) => format!("dump: {error}").into(),
         }
     }
 }

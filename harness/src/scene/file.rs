@@ -253,9 +253,9 @@ pub struct Abuffer {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
-    /// Pairs of ray and triangle too close to an edge for Embree's vote.
-    #[serde(default = "Budget::default_edge")]
-    pub edge: Share,
+    /// Pairs of ray and triangle too close to an edge for Embree's vote. Left out:
+    /// [`Budget::EDGE`], and with `[grid]` what its rays are drawn for.
+    pub edge: Option<Share>,
     /// Triangles that stage clip may decide either way, or on whose corners WGSL
     /// promises nothing in clip or snap; vertices on which it promises nothing in transform.
     #[serde(default = "Budget::default_vertex")]
@@ -263,8 +263,12 @@ pub struct Budget {
 }
 
 impl Budget {
-    fn default_edge() -> Share {
-        Share(0.001)
+    /// Share of pairs in class edge where nothing is aimed at edges.
+    pub const EDGE: f64 = 0.001;
+
+    /// The share of `edge` as stated, or by default.
+    pub fn edge(&self) -> f64 {
+        self.edge.map_or(Self::EDGE, |share| share.0)
     }
 
     fn default_vertex() -> Share {
@@ -275,7 +279,7 @@ impl Budget {
 impl Default for Budget {
     fn default() -> Self {
         Self {
-            edge: Self::default_edge(),
+            edge: None,
             vertex: Self::default_vertex(),
         }
     }

@@ -15,7 +15,7 @@ use crate::error::InputError;
 
 /// Largest entry of a mesh's placement. World coordinates then stay below 1e90,
 /// and their products in shading below the largest `f64`.
-const PLACEMENT_MAX: f64 = 1e50;
+pub(super) const PLACEMENT_MAX: f64 = 1e50;
 
 /// One mesh entry, resolved.
 struct Placed<'a> {

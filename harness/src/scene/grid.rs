@@ -5,7 +5,9 @@ use triptych_spec::grid::Membership;
 use triptych_spec::grid::axis::CELLS_MAX;
 use triptych_spec::grid::resolution::Resolution;
 
+use super::Parsed;
 use super::value::{Capacity, Exactly};
+use crate::error::InputError;
 
 /// Most rays of a kind: with answers and copies a ray costs about 200 bytes.
 pub const RAYS_MAX: u32 = 1 << 21;
@@ -91,6 +93,20 @@ impl Default for Rays {
             cell: count,
         }
     }
+}
+
+/// Refuses keys that nothing of a scene with `[grid]` depends on. Lights, materials and background
+/// are seen in its pictures.
+pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
+    if parsed.file.grid.is_none() || parsed.file.rsm.is_some() {
+        return Ok(());
+    }
+    let idle = ["camera", "abuffer", "expect", "budget.vertex"];
+    let stated = idle.into_iter().find(|key| parsed.keys.states(key));
+    stated.map_or(Ok(()), |key| {
+        let message = "has no effect on a scene with [grid]; leave it out";
+        Err(parsed.mistake(key, message))
+    })
 }
 
 /// A number of rays.

@@ -9,6 +9,8 @@ use triptych_spec::rsm::{BLUR_MAX, DIVISOR_MAX, OFFSET_MAX, OFFSET_MIN, RADIUS_M
 
 use super::Parsed;
 use super::file::{Abuffer, CameraEntry, MeshEntry, SceneFile};
+use super::flatten::PLACEMENT_MAX;
+use super::source::Source;
 use super::value::{Colour, ImageSize, Point};
 use crate::error::InputError;
 
@@ -21,6 +23,10 @@ pub const PIXELS_MAX: u64 = 1 << 22;
 /// Most pairs of a pixel and a texel of its kernel, over all frames: the spec gathers ten
 /// million of them a second, and Embree traces each for the reference.
 pub const PAIRS_MAX: u64 = 1 << 28;
+
+/// Most triangles of all frames together, which are held at once: one that is seen and blocks takes
+/// 188 bytes in each, so that this is 1.6 GB.
+pub const FRAME_TRIANGLES_MAX: u64 = 1 << 23;
 
 /// What lights the scene, and how its light is gathered. Lengths are in world units where
 /// nothing else is said.
@@ -199,6 +205,11 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     }
     let checked = rsm.get_ref().check(file.size.0.pixels() as u64);
     checked.map_err(|message| parsed.error(rsm.span(), message))?;
+    if parsed.keys.states("budget.vertex") {
+        let message = "has no effect on a scene with [rsm]; leave it out";
+        return Err(parsed.mistake("budget.vertex", message));
+    }
+    check_moves(parsed, rsm.get_ref().frames.0)?;
     let lamp = &rsm.get_ref().lamp;
     let map = rsm.get_ref().map.0;
     let aspect = f64::from(map.width) / f64::from(map.height);
@@ -208,6 +219,47 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
         let message = message.replacen("camera:", "lamp:", 1);
         parsed.error(lamp.span(), message)
     })
+}
+
+/// Holds meshes to where they may be placed in the last of so many frames.
+fn check_moves(parsed: &Parsed, frames: u32) -> Result<(), InputError> {
+    let steps = f64::from(frames - 1);
+    for (number, mesh) in parsed.file.mesh.iter().enumerate() {
+        let Motion { rotate, translate } = mesh.get_ref().motion();
+        for (name, by) in [("rotate", rotate), ("translate", translate)] {
+            let far =
+                by.0.into_iter()
+                    .find(|by| (by * steps).abs() > PLACEMENT_MAX);
+            if let Some(by) = far {
+                let key = format!("mesh.{number}.moves.{name}");
+                let message = format!(
+                    "{by:e} in each of {frames} frames is beyond {PLACEMENT_MAX:e} at the end"
+                );
+                return Err(parsed.mistake(&key, message));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Holds what was loaded against what all frames may hold together.
+pub(super) fn check_meshes(parsed: &Parsed, meshes: &[Source]) -> Result<(), InputError> {
+    let Some(rsm) = &parsed.file.rsm else {
+        return Ok(());
+    };
+    let frames = rsm.get_ref().frames.0;
+    let triangles = |mesh: &Source| mesh.stats.instances * mesh.mesh.triangles.len() as u64;
+    // Below 2^4 * 2^22, as the sums of a scene have limits of their own.
+    let all: u64 = meshes.iter().map(triangles).sum();
+    let total = u64::from(frames) * all;
+    if total <= FRAME_TRIANGLES_MAX {
+        return Ok(());
+    }
+    let message = format!(
+        "{frames} frames of {all} triangles are {total}, and {FRAME_TRIANGLES_MAX} in all frames are \
+         the limit"
+    );
+    Err(parsed.mistake("rsm.frames", message))
 }
 
 /// A key that is stated, and that nothing of a scene with `[rsm]` depends on.

@@ -9,7 +9,7 @@ use super::ink::Ink;
 use crate::again::Again;
 use crate::cause::Cause;
 use crate::digest::Pair;
-use crate::row::{Row, Verdict};
+use crate::row::{Class, Row, Verdict};
 use crate::text::{clean, count, plural, share};
 
 /// For each pair of legs the first stage that diverges: an error belongs to the
@@ -80,7 +80,11 @@ fn finding(row: &Row) -> String {
         let part = row.admitted_share();
         if part > budget {
             let (part, budget) = (share(part), share(budget));
-            parts.push(format!("{part} not judged, the budget is {budget}"));
+            let key = match row.class {
+                Class::Vote => "; budget.edge in its scene.toml states another",
+                _ => "",
+            };
+            parts.push(format!("{part} not judged, the budget is {budget}{key}"));
         }
     }
     parts.join("; ")

@@ -3,6 +3,7 @@ use std::sync::{Arc, Mutex};
 use super::*;
 use crate::cause::Cause;
 use crate::digest::tests::row;
+use crate::row::Class;
 
 /// An output that tests read while the reporter owns it.
 #[derive(Clone, Default)]
@@ -206,17 +207,19 @@ fn nothing_compared_is_not_good_news() {
 
 #[test]
 fn a_broken_budget_says_so() {
-    let over = Row {
+    let mut over = Row {
         admitted: 100,
         admitted_budget: Some(0.001),
         ..row("abuffer/a", "cover", "spec", "embree")
     };
-    let text = printed(100, false, &[scene("abuffer/a", vec![over])]);
-    assert!(text.contains("10.0 %!"), "{text}");
-    assert!(
-        text.contains("10.0 % not judged, the budget is 0.100 %"),
-        "{text}"
-    );
+    let told = "10.0 % not judged, the budget is 0.100 %";
+    let key = "; budget.edge in its scene.toml states another";
+    for (class, key) in [(Class::Vote, key), (Class::Decision, "")] {
+        over.class = class;
+        let text = printed(200, false, &[scene("abuffer/a", vec![over.clone()])]);
+        assert!(text.contains(&format!("{told}{key}\n")), "{text}");
+        assert!(text.contains("10.0 %!"), "{text}");
+    }
 }
 
 #[test]

@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use glam::Vec3A;
 use obvhs::BvhBuildParams;
-use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh_from_tris;
-
+use obvhs::cwbvh::{CwBvh, node::CwBvhNode};
 use obvhs::ray::{Ray as ObvhsRay, RayHit};
 use obvhs::triangle::Triangle;
 use rayon::prelude::*;
@@ -37,11 +36,37 @@ pub(super) fn of_spec(grid: &Grid, blockers: &Blockers, query: Query, ray: &Ray)
     }
 }
 
-/// Whether Embree says so.
-pub(super) fn of_embree(scene: &RayScene, query: Query, ray: &Ray) -> bool {
+/// Bytes of the spec's grid and its triangles.
+pub(super) fn bytes(grid: &Grid, blockers: &Blockers) -> u64 {
+    let boundaries: usize = grid.axes.iter().map(|axis| axis.boundaries().len()).sum();
+    let points = 12 * (blockers.vertices.len() + blockers.triangles.len());
+    (points + 4 * (boundaries + grid.offsets.len() + grid.prims.len())) as u64
+}
+
+/// Others' trees of the same triangles.
+pub(super) struct Rivals {
+    pub(super) embree: RayScene,
+    pub(super) obvhs: Obvhs,
+}
+
+impl Rivals {
+    /// Builds both.
+    ///
+    /// # Errors
+    /// What Embree reports.
+    pub(super) fn new(blockers: &Blockers) -> Result<Self, EmbreeError> {
+        Ok(Self {
+            embree: embree(blockers)?,
+            obvhs: Obvhs::new(blockers),
+        })
+    }
+}
+
+/// Whether Embree meets something, and what, if that is asked.
+pub(super) fn of_embree(scene: &RayScene, query: Query, ray: &Ray) -> Option<Option<u32>> {
     match query {
-        Query::Any => scene.occluded(ray),
-        Query::Closest => scene.closest(ray).is_some(),
+        Query::Any => scene.occluded(ray).then_some(None),
+        Query::Closest => scene.closest(ray).map(|hit| Some(hit.prim)),
     }
 }
 
@@ -75,17 +100,26 @@ impl Obvhs {
         }
     }
 
-    pub(super) fn meets(&self, query: Query, ray: &Ray) -> bool {
+    /// Bytes of nodes, rows and triangles.
+    pub(super) fn bytes(&self) -> u64 {
+        let nodes = size_of::<CwBvhNode>() * self.tree.nodes.len();
+        let rows = size_of::<u32>() * self.tree.primitive_indices.len();
+        (nodes + rows + size_of::<Triangle>() * self.triangles.len()) as u64
+    }
+
+    /// Whether it meets something, and what, if that is asked.
+    pub(super) fn meets(&self, query: Query, ray: &Ray) -> Option<Option<u32>> {
         let [origin, direction] =
             [ray.origin, ray.direction].map(|p| Vec3A::from(p.map(|c| c as f32)));
         let end = if ray.segment { 1.0 } else { f32::MAX };
         let ray = ObvhsRay::new(origin, direction, 0.0, end);
         let intersect = |ray: &ObvhsRay, id: usize| self.triangles[id].intersect(ray);
         match query {
-            Query::Any => !self.tree.ray_traverse_miss(ray, intersect),
+            Query::Any => (!self.tree.ray_traverse_miss(ray, intersect)).then_some(None),
             Query::Closest => {
                 let mut hit = RayHit::none();
-                self.tree.ray_traverse(ray, &mut hit, intersect)
+                let met = self.tree.ray_traverse(ray, &mut hit, intersect);
+                met.then(|| Some(self.tree.primitive_indices[hit.primitive_id as usize]))
             }
         }
     }

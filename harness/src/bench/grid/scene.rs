@@ -1,21 +1,18 @@
 //! A scene at a resolution.
 
 use triptych_gpu::grid::Span;
-use triptych_gpu::kernel::Kernels;
-use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::resolution::Resolution;
-use triptych_spec::grid::trace::{Closest, Query, trace};
+use triptych_spec::grid::trace::Query;
 use triptych_spec::grid::{Blockers, Grid, Membership};
 
 use super::super::counts;
 use super::super::legs::{Legs, Station, Taken, order};
 use super::super::warm::wake;
-use super::super::{Ceilings, Progress, Spread, WARM_UP};
-use super::gpu::{Work, set_up};
-use super::run::Options;
-use super::{RAYS_OF_CPU, cpu, row};
-use crate::compare::grid::Asked;
-use crate::rays::{Kind, Source, view};
+use super::super::{Ceilings, Progress, WARM_UP};
+use super::asking::Asking;
+use super::cpu::{self, Rivals};
+use super::gpu::{Work, confirm, set_up};
+use super::{RAYS_OF_SOFTWARE, row};
 use crate::replay::spec::timed;
 
 /// A scene at a resolution.
@@ -23,26 +20,36 @@ pub(super) struct Scene<'a> {
     name: String,
     blockers: &'a Blockers,
     grid: Grid,
-    kinds: Vec<Asking>,
+    kinds: &'a [Asking],
+    rivals: &'a Rivals,
 }
 
-/// Rays of a kind, and the spec's answers to the first of them.
-struct Asking {
-    kind: &'static str,
-    rays: Vec<Ray>,
-    answers: Vec<Option<Closest>>,
+/// Who traces rays on the CPU.
+#[derive(Clone, Copy, PartialEq)]
+enum Who {
+    Spec,
+    Embree,
+    Obvhs,
 }
+
+/// Legs on the CPU: names, who, on all threads or on one, and the leg that each is held against.
+const ON_CPU: [(&str, Who, bool, Option<usize>); 5] = [
+    ("spec, one thread", Who::Spec, false, Some(1)),
+    ("embree, one thread", Who::Embree, false, None),
+    ("obvhs, one thread", Who::Obvhs, false, Some(1)),
+    ("embree, all threads", Who::Embree, true, None),
+    ("obvhs, all threads", Who::Obvhs, true, Some(3)),
+];
 
 impl<'a> Scene<'a> {
+    /// `scale`: cells along each axis over those of `own`, the scene's grid.
     pub(super) fn new(
         name: &str,
-        blockers: &'a Blockers,
+        (blockers, own): (&'a Blockers, &Grid),
         scale: f64,
-        seed: u64,
-        options: &Options,
+        kinds: &'a [Asking],
+        rivals: &'a Rivals,
     ) -> Result<Self, String> {
-        let own = Grid::build(blockers, Resolution::FromScene, Membership::Box);
-        let own = own.map_err(|e| e.to_string())?;
         let cells = own.axes.each_ref().map(|axis| {
             let cells = (f64::from(axis.cells()) * scale).round().clamp(1.0, 1024.0);
             #[expect(
@@ -55,28 +62,13 @@ impl<'a> Scene<'a> {
         });
         let grid = Grid::build(blockers, Resolution::Given(cells), Membership::Box);
         let grid = grid.map_err(|e| e.to_string())?;
-        let mut source = Source::new(blockers, &grid, seed);
-        let mut kinds = Vec::new();
-        for kind in [Kind::Random, Kind::Aimed] {
-            let rays: Vec<Ray> = (0..options.rays).map(|_| source.next(kind)).collect();
-            kinds.push((kind.name(), rays));
-        }
-        kinds.push(("view", view(&grid, options.rays)));
-        let answered = |(kind, rays): (&'static str, Vec<Ray>)| {
-            let answers = trace(&grid, blockers, &rays[..rays.len().min(RAYS_OF_CPU)]);
-            Asking {
-                kind,
-                rays,
-                answers,
-            }
-        };
-        let kinds = kinds.into_iter().map(answered).collect();
         let cells = grid.axes.each_ref().map(|axis| axis.cells().to_string());
         Ok(Self {
             name: format!("{name} {}", cells.join("x")),
             blockers,
             grid,
             kinds,
+            rivals,
         })
     }
 
@@ -87,64 +79,37 @@ impl<'a> Scene<'a> {
         legs: &mut Legs,
         progress: &Progress,
     ) {
-        progress.begin(&self.name, 2 + u32::try_from(self.kinds.len()).unwrap_or(0));
+        let kinds = u32::try_from(self.kinds.len()).unwrap_or(0);
+        let stops = u32::try_from(stations.len()).unwrap_or(0) + 1;
+        progress.begin(&self.name, 1 + kinds * stops);
         self.builds(legs);
         progress.step();
         for (at, asking) in self.kinds.iter().enumerate() {
-            let Asking {
-                kind,
-                rays,
-                answers,
-            } = asking;
-            self.on_cpu(kind, &rays[..answers.len()], legs);
-            let asked = Asked {
-                blockers: self.blockers,
-                rays: &rays[..answers.len()],
-                answers,
-            };
-            for station in stations {
-                // A software driver is no faster than a CPU.
-                let software = station.adapter.gpu.info.device_type == wgpu::DeviceType::Cpu;
-                let work = Work {
-                    blockers: self.blockers,
-                    grid: &self.grid,
-                    rays: if software { asked.rays } else { rays },
-                    asked,
-                };
-                let label = format!("gpu@{}", station.adapter.gpu.name);
-                match self.on_gpu(station, &work, kind, at == 0, legs) {
-                    Ok(Some(build)) => {
-                        let name = &station.adapter.gpu.name;
-                        let own = ceilings.iter().find(|c| c.name == *name);
-                        legs.remarks
-                            .extend(own.map(|c| self.bound(&label, build, c)));
-                    }
-                    Ok(None) => {}
-                    Err(why) => {
-                        let name = &self.name;
-                        legs.remarks
-                            .push(format!("not measured: {label}: {name}, {kind}: {why}"));
-                    }
-                }
+            for query in [Query::Any, Query::Closest] {
+                self.on_cpu(asking, query, legs);
             }
             progress.step();
+            for station in stations {
+                let name = &station.adapter.gpu.name;
+                let own = ceilings.iter().find(|c| c.name == *name);
+                if let Err(why) = self.on_gpu(station, own, asking, at == 0, legs) {
+                    let (scene, kind) = (&self.name, asking.kind);
+                    legs.remarks
+                        .push(format!("not measured: gpu@{name}: {scene}, {kind}: {why}"));
+                }
+                progress.step();
+            }
         }
     }
 
-    /// What bounds a build: corners are read twice, offsets and counts pass several times,
+    /// What a build must move: corners are read twice, offsets and counts pass several times,
     /// entries are written once; each entry takes an atomic to be counted and one to be placed.
-    fn bound(&self, label: &str, seconds: f64, ceilings: &Ceilings) -> String {
+    fn of_build(&self) -> counts::Work {
         let (entries, cells) = (self.grid.prims.len() as u64, self.grid.offsets.len() as u64);
-        let work = counts::Work {
+        counts::Work {
             bytes: 2 * 36 * self.blockers.triangles.len() as u64 + 4 * 7 * cells + 4 * 3 * entries,
             atomics: 2 * entries,
-        };
-        let (bound, least) = ceilings.bound(work);
-        format!(
-            "{label}: {}: a build of {entries} entries is at {:.1} % of what its {bound} allow",
-            self.name,
-            100.0 * least / seconds
-        )
+        }
     }
 
     /// Builds of grid and trees.
@@ -170,6 +135,12 @@ impl<'a> Scene<'a> {
                 }
             }
         }
+        for (who, own) in [Who::Spec, Who::Embree, Who::Obvhs]
+            .into_iter()
+            .zip(&mut taken)
+        {
+            own.more.memory = Some(self.bytes(who));
+        }
         let rows = taken.iter().enumerate().map(|(at, own)| {
             let against = (at != 1).then_some(&taken[1]);
             row(own, &self.name, "build", against)
@@ -177,96 +148,151 @@ impl<'a> Scene<'a> {
         legs.rows.extend(rows);
     }
 
-    /// Rays of a kind on one thread and on all.
-    fn on_cpu(&self, kind: &str, rays: &[Ray], legs: &mut Legs) {
-        let embree = match cpu::embree(self.blockers) {
-            Ok(scene) => scene,
-            Err(error) => {
-                legs.remarks.push(format!("not measured: embree: {error}"));
-                return;
-            }
-        };
-        let obvhs = cpu::Obvhs::new(self.blockers);
-        for (query, name) in [(Query::Any, "any"), (Query::Closest, "closest")] {
-            let names = [
-                "spec, one thread",
-                "embree, one thread",
-                "obvhs, one thread",
-                "embree, all threads",
-                "obvhs, all threads",
-            ];
-            let mut taken = names.map(|name| Taken::new(name, "host", rays.len() as u64));
-            for round in 0..WARM_UP + legs.runs {
-                for at in order(round, names.len()) {
-                    let threads = at >= 3;
-                    let of_spec = |ray: &Ray| cpu::of_spec(&self.grid, self.blockers, query, ray);
-                    let of_embree = |ray: &Ray| cpu::of_embree(&embree, query, ray);
-                    let of_obvhs = |ray: &Ray| obvhs.meets(query, ray);
-                    let (met, time) = match at {
-                        0 => timed(|| cpu::count(rays, threads, of_spec)),
-                        1 | 3 => timed(|| cpu::count(rays, threads, of_embree)),
-                        _ => timed(|| cpu::count(rays, threads, of_obvhs)),
-                    };
-                    std::hint::black_box(met);
-                    if round >= WARM_UP {
-                        taken[at].seconds.push(time.as_secs_f64());
-                    }
-                }
-            }
-            let rows = taken.iter().enumerate().map(|(at, own)| {
-                let against = [Some(1), None, Some(1), None, Some(3)][at];
-                row(
-                    own,
-                    &self.name,
-                    &format!("{name} {kind}"),
-                    against.map(|at| &taken[at]),
-                )
-            });
-            legs.rows.extend(rows);
+    fn bytes(&self, who: Who) -> u64 {
+        match who {
+            Who::Spec => cpu::bytes(&self.grid, self.blockers),
+            Who::Embree => self.rivals.embree.bytes(),
+            Who::Obvhs => self.rivals.obvhs.bytes(),
         }
     }
 
-    /// An adapter; the median seconds of a build, if it is to be noted.
+    /// Rays of a kind on one thread and on all. A rival that is too unlike the spec is left out.
+    fn on_cpu(&self, asking: &Asking, query: Query, legs: &mut Legs) {
+        let compared = asking.rivals(query);
+        let Rivals { embree, obvhs } = self.rivals;
+        let is_in = |who: Who| match who {
+            Who::Spec => true,
+            Who::Embree => compared.refused[0].is_none(),
+            Who::Obvhs => compared.refused[1].is_none(),
+        };
+        let mut taken = ON_CPU.map(|(name, who, ..)| {
+            let rays = asking.on_cpu(who == Who::Spec).len() as u64;
+            Taken::new(name, "host", rays)
+        });
+        for round in 0..WARM_UP + legs.runs {
+            for at in order(round, ON_CPU.len()).filter(|at| is_in(ON_CPU[*at].1)) {
+                let (_, who, threads, _) = ON_CPU[at];
+                let rays = asking.on_cpu(who == Who::Spec);
+                let (grid, blockers) = (&self.grid, self.blockers);
+                let (met, time) = timed(|| match who {
+                    Who::Spec => cpu::count(rays, threads, |ray| {
+                        cpu::of_spec(grid, blockers, query, ray)
+                    }),
+                    Who::Embree => cpu::count(rays, threads, |ray| {
+                        cpu::of_embree(embree, query, ray).is_some()
+                    }),
+                    Who::Obvhs => {
+                        cpu::count(rays, threads, |ray| obvhs.meets(query, ray).is_some())
+                    }
+                });
+                std::hint::black_box(met);
+                if round >= WARM_UP {
+                    taken[at].seconds.push(time.as_secs_f64());
+                }
+            }
+        }
+        let asked = asking.on_cpu(false).len() as u64;
+        for ((_, who, ..), own) in ON_CPU.into_iter().zip(&mut taken) {
+            own.more.memory = Some(self.bytes(who));
+            own.more.unlike = match who {
+                Who::Spec => None,
+                Who::Embree => Some([compared.unlike[0], asked]),
+                Who::Obvhs => Some([compared.unlike[1], asked]),
+            };
+        }
+        let what = format!("{} {}", name(query), asking.kind);
+        for ((_, who, _, against), own) in ON_CPU.iter().zip(&taken) {
+            if is_in(*who) {
+                let against = against.filter(|at| is_in(ON_CPU[*at].1));
+                let against = against.map(|at| &taken[at]);
+                legs.rows.push(row(own, &self.name, &what, against));
+            }
+        }
+    }
+
+    /// An adapter; `build`: its builds are noted as well.
     fn on_gpu(
         &self,
         station: &Station<'_>,
-        work: &Work<'_>,
-        kind: &str,
+        ceilings: Option<&Ceilings>,
+        asking: &Asking,
         build: bool,
         legs: &mut Legs,
-    ) -> Result<Option<f64>, String> {
+    ) -> Result<(), String> {
         let gpu = &station.adapter.gpu;
-        let checked: &Kernels = &station.adapter.kernels;
-        let (ready, timer) = set_up(gpu, checked, &station.kernels, &station.clock, work)?;
-        let items = [
-            self.blockers.triangles.len(),
-            work.rays.len(),
-            work.rays.len(),
-        ];
-        let clock = station.clock_name();
+        // A software driver is no faster than a CPU.
+        let software = gpu.info.device_type == wgpu::DeviceType::Cpu;
+        let most = if software {
+            RAYS_OF_SOFTWARE
+        } else {
+            usize::MAX
+        };
+        let work = Work {
+            blockers: self.blockers,
+            grid: &self.grid,
+            asked: asking.asked(self.blockers, most),
+        };
+        let spans = if build {
+            &Span::ALL[..]
+        } else {
+            &Span::ALL[1..]
+        };
+        let kernels = [&station.adapter.kernels, &station.kernels];
+        let (ready, timer) = set_up(gpu, kernels, &station.clock, &work, spans)?;
+        let rays = work.asked.rays.len() as u64;
         let label = format!("gpu@{}", gpu.name);
-        let mut taken = items.map(|items| Taken::new(label.as_str(), clock, items as u64));
+        let of = |span: &Span| {
+            let items = match span {
+                Span::Build => self.blockers.triangles.len() as u64,
+                Span::Any | Span::Closest => rays,
+            };
+            Taken::new(label.as_str(), station.clock_name(), items)
+        };
+        let mut taken: Vec<Taken> = spans.iter().map(of).collect();
         for round in 0..WARM_UP + legs.runs {
-            if gpu.info.device_type != wgpu::DeviceType::Cpu {
-                wake(|| ready.time(&timer).map(drop)).map_err(|e| e.to_string())?;
+            if !software {
+                wake(|| ready.time(spans, &timer).map(drop)).map_err(|e| e.to_string())?;
             }
-            let seconds = ready.time(&timer).map_err(|e| e.to_string())?;
+            let seconds = ready.time(spans, &timer).map_err(|e| e.to_string())?;
             if round >= WARM_UP {
                 for (taken, seconds) in taken.iter_mut().zip(seconds) {
                     taken.seconds.push(seconds);
                 }
             }
         }
-        for (span, own) in Span::ALL.into_iter().zip(&taken) {
-            let what = match span {
-                Span::Build if build => "build".to_owned(),
-                Span::Build => continue,
-                Span::Any => format!("any {kind}"),
-                Span::Closest => format!("closest {kind}"),
+        confirm(&ready, &work)?;
+        for (span, own) in spans.iter().zip(&mut taken) {
+            let of_query = |query| (format!("{} {}", name(query), asking.kind), of_rays(rays));
+            let (what, least) = match span {
+                Span::Build => ("build".to_owned(), self.of_build()),
+                Span::Any => of_query(Query::Any),
+                Span::Closest => of_query(Query::Closest),
             };
+            own.more.memory = Some(ready.bytes(*span));
+            own.more.unlike = (*span != Span::Build).then_some([0, rays]);
+            own.more.bound = ceilings.map(|ceilings| {
+                let (bound, seconds) = ceilings.bound(least);
+                (bound, seconds / own.median())
+            });
             legs.rows.push(row(own, &self.name, &what, None));
         }
-        let median = Spread::of(taken[0].seconds.iter().copied()).median;
-        Ok(build.then_some(median))
+        Ok(())
+    }
+}
+
+/// What a search must move: each ray is read, its hit read and written. Of the grid nothing is
+/// counted, as a cache may hold it.
+fn of_rays(rays: u64) -> counts::Work {
+    counts::Work {
+        bytes: (32 + 2 * 16) * rays,
+        atomics: 0,
+    }
+}
+
+/// How rays are traced, as rows say it.
+pub(super) fn name(query: Query) -> &'static str {
+    match query {
+        Query::Any => "any",
+        Query::Closest => "closest",
     }
 }

@@ -2,13 +2,13 @@
 
 use super::super::csv::number;
 use super::super::{WARM_UP, markdown};
-use super::table::{COLUMNS, cells, verdict};
+use super::table::{NAMES, table, verdict};
 use super::{Legs, Row};
 use crate::text::{markdown as text, quoted};
 
 /// The columns of the file of values. Times are in milliseconds; a ratio is of the time of
 /// an item; what is not demanded is empty.
-const VALUES: [&str; 15] = [
+const VALUES: [&str; 20] = [
     "scene",
     "what",
     "items",
@@ -24,6 +24,11 @@ const VALUES: [&str; 15] = [
     "ratio_min",
     "ratio_max",
     "at_most",
+    "memory_bytes",
+    "bound",
+    "fraction_of_bound",
+    "unlike",
+    "unlike_of",
 ];
 
 impl Legs {
@@ -47,6 +52,8 @@ fn values(row: &Row, runs: u32) -> [String; VALUES.len()] {
     let ratio = |of: fn(&super::Spread) -> f64| {
         against.map_or_else(String::new, |against| number(of(&against.ratio)))
     };
+    let more = row.more;
+    let of = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
     [
         quoted(&row.scene).into_owned(),
         quoted(&row.what).into_owned(),
@@ -65,6 +72,13 @@ fn values(row: &Row, runs: u32) -> [String; VALUES.len()] {
         against
             .and_then(|against| against.most)
             .map_or_else(String::new, |most| most.to_string()),
+        of(more.memory),
+        more.bound
+            .map_or_else(String::new, |(name, _)| name.to_owned()),
+        more.bound
+            .map_or_else(String::new, |(_, part)| number(part)),
+        of(more.unlike.map(|[unlike, _]| unlike)),
+        of(more.unlike.map(|[_, all]| all)),
     ]
 }
 
@@ -85,10 +99,19 @@ pub fn page_of(legs: &Legs, title: &str, how: &str) -> String {
         lines.push(format!("**{verdict}.**"));
         lines.push(String::new());
     }
-    lines.push(format!("| {} |", COLUMNS.join(" | ")));
-    lines.push("|---|---|---|---|---:|---:|---:|---|".to_owned());
-    let row = |row: &Row| format!("| {} |", cells(row).map(|cell| text(&cell)).join(" | "));
-    lines.extend(legs.rows.iter().map(row));
+    let row = |row: &Vec<String>| {
+        let cells: Vec<String> = row.iter().map(|cell| text(cell)).collect();
+        format!("| {} |", cells.join(" | "))
+    };
+    let table = table(legs);
+    let numbers = table[0].len() - NAMES;
+    lines.push(row(&table[0]));
+    lines.push(format!(
+        "|{}{}",
+        "---|".repeat(NAMES),
+        "---:|".repeat(numbers)
+    ));
+    lines.extend(table[1..].iter().map(row));
     lines.push(String::new());
     lines.join("\n")
 }

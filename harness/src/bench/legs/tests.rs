@@ -1,7 +1,7 @@
 //! The arithmetic of ratios and demands, and what is written of it.
 
 use super::super::Spread;
-use super::{Against, Legs, Row, Taken, csv, lines, order, page};
+use super::{Against, Legs, More, Row, Taken, csv, lines, order, page};
 
 fn taken(leg: &str, items: u64, seconds: &[f64]) -> Taken {
     Taken {
@@ -60,7 +60,7 @@ fn files_say_what_was_measured() {
     let csv = csv(&legs);
     let line = csv.lines().nth(1).expect("a row");
     let must = "a/b,cover,200,spec,3,host,1000.000000,1000.000000,4000.000000,200,\
-                \"gpu@x, y/fragment\",0.500000,0.250000,1.000000,0.5";
+                \"gpu@x, y/fragment\",0.500000,0.250000,1.000000,0.5,,,,,";
     assert_eq!(line, must);
     let page = page(&legs);
     for part in [
@@ -76,4 +76,40 @@ fn files_say_what_was_measured() {
         lines.contains("0.50 [0.25, 1.00] of gpu@x, y/fragment"),
         "{lines}"
     );
+}
+
+/// Columns that no row fills are left out of tables, and are empty in the file of values.
+#[test]
+fn what_else_is_known_has_columns() {
+    let more = More {
+        memory: Some(3 << 20),
+        bound: Some(("bytes", 0.25)),
+        unlike: Some([7, 2000]),
+    };
+    let known = Taken {
+        more,
+        ..taken("obvhs", 100, &[1.0])
+    };
+    let legs = Legs {
+        date: "2000-01-02".into(),
+        machine: super::Machine::default(),
+        runs: 1,
+        rows: vec![known.row("a/b", "build", None), row(None)],
+        remarks: Vec::new(),
+    };
+    let values = csv(&legs);
+    assert!(
+        values.contains(",,,,,,3145728,bytes,0.250000,7,2000\n"),
+        "{values}"
+    );
+    let text = page(&legs);
+    let heading = "| items/s | time an item over | memory | of bound | unlike the spec |";
+    assert!(text.contains(heading), "{text}");
+    assert!(
+        text.contains("|  | 3.0 MiB | 25.0 % bytes | 7 of 2,000 |"),
+        "{text}"
+    );
+    let [first, second] = [0, 1].map(|at| lines(&legs)[at].clone());
+    assert!(first.ends_with("unlike the spec") && second.contains("25.0 % bytes"));
+    assert!(!first.contains("demand"), "{first}");
 }

@@ -15,7 +15,7 @@ use super::super::warm::wake;
 use super::super::{Spread, WARM_UP};
 use super::case::{Case, error};
 use super::judge::check;
-use super::{Row, run::row};
+use super::{OfAdapter, Row, run::row};
 use crate::calibrate::Grid;
 
 /// Measures one setting on one adapter.
@@ -72,8 +72,38 @@ pub(super) fn measure(
         rays: timed.rays.into(),
         frame: Spread::of(frames),
         parts: named.zip(parts).collect(),
+        own: Some(OfAdapter {
+            memory: timed.bytes,
+            ..apart(case, &made.lit, &picture)
+        }),
         ..row(case, parameters, error(&case.reference, &picture))
     })
+}
+
+/// How many pixels are lit otherwise than the spec's, and how far the others are from the
+/// reference at most.
+fn apart(case: &Case, lit: &[bool], picture: &[[f64; 3]]) -> OfAdapter {
+    let same: Vec<bool> = case
+        .base
+        .direct
+        .lit
+        .iter()
+        .zip(lit)
+        .map(|(a, b)| a == b)
+        .collect();
+    let kept = |colours: &[[f64; 3]]| -> Vec<[f64; 3]> {
+        let pairs = colours.iter().zip(&same);
+        pairs
+            .filter(|(_, same)| **same)
+            .map(|(colour, _)| *colour)
+            .collect()
+    };
+    let [_, largest_elsewhere] = error(&kept(&case.reference), &kept(picture));
+    OfAdapter {
+        memory: 0,
+        lit_otherwise: same.iter().filter(|same| !**same).count() as u64,
+        largest_elsewhere,
+    }
 }
 
 /// The hardware's rasteriser, if it samples the spec's grid.

@@ -15,7 +15,7 @@ use crate::compare::Judgement;
 use crate::compare::rsm as judge;
 
 /// Pixels of a sample, at most.
-const SAMPLE: usize = 1 << 12;
+pub(super) const SAMPLE: usize = 1 << 12;
 
 /// Refuses what is not the spec's, in words. `base` is what the spec sees.
 pub(super) fn check(setting: &Setting<'_>, base: &Frame, made: &Made) -> Result<(), String> {

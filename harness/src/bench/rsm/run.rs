@@ -172,6 +172,7 @@ pub(super) fn row(case: &Case, parameters: Parameters, [rmse, largest]: [f64; 2]
         parts: Vec::new(),
         rmse,
         largest,
+        own: None,
     }
 }
 

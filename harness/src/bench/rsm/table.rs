@@ -1,13 +1,14 @@
 //! Rows as tables: on the terminal, as a page that can be committed, as values.
 
 use super::super::csv::number;
-use super::super::table::spread;
+use super::super::table::{mebibytes, spread};
 use super::super::{WARM_UP, markdown};
-use super::{Frames, Row};
+use super::judge::SAMPLE;
+use super::{Frames, OfAdapter, Row};
 use crate::text::{clean, markdown as text, quoted};
 
 /// Columns of the tables.
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 13] = [
     "scene",
     "leg",
     "kernel",
@@ -19,10 +20,12 @@ const COLUMNS: [&str; 11] = [
     "rays/s of B",
     "RMSE",
     "largest",
+    "lit otherwise",
+    "memory",
 ];
 
 /// Columns of the file of values; times are in milliseconds, colours linear.
-const VALUES: [&str; 18] = [
+const VALUES: [&str; 21] = [
     "scene",
     "leg",
     "clock",
@@ -41,6 +44,9 @@ const VALUES: [&str; 18] = [
     "frame_ms",
     "rmse",
     "largest",
+    "lit_otherwise",
+    "largest_elsewhere",
+    "memory_bytes",
 ];
 
 fn cells(row: &Row) -> [String; COLUMNS.len()] {
@@ -65,7 +71,19 @@ fn cells(row: &Row) -> [String; COLUMNS.len()] {
             format!("{:.0} M", row.rays as f64 / time.median / 1000.0)
         }),
         format!("{:.2e}", row.rmse),
-        format!("{:.1e}", row.largest),
+        match row.own {
+            Some(own) if own.lit_otherwise > 0 => {
+                format!(
+                    "{:.1e}, elsewhere {:.1e}",
+                    row.largest, own.largest_elsewhere
+                )
+            }
+            _ => format!("{:.1e}", row.largest),
+        },
+        row.own
+            .map_or_else(String::new, |own| own.lit_otherwise.to_string()),
+        row.own
+            .map_or_else(String::new, |own| mebibytes(own.memory)),
     ]
 }
 
@@ -97,6 +115,11 @@ pub fn page(frames: &Frames) -> String {
     lines.push(String::new());
     lines.extend(how(frames.runs).lines().map(str::to_owned));
     lines.push(String::new());
+    lines.push(format!(
+        "![Front of time against error]({}.svg)",
+        frames.stem()
+    ));
+    lines.push(String::new());
     lines.push(format!("| {} |", COLUMNS.join(" | ")));
     lines.push(format!("|---|---|{}", "---:|".repeat(COLUMNS.len() - 2)));
     let row = |row: &Row| format!("| {} |", cells(row).map(|cell| text(&cell)).join(" | "));
@@ -115,7 +138,13 @@ fn how(runs: u32) -> String {
          their search, blocked light), *compose* (blur\nand picture). *Kernel*: texels of the \
          light's map; *B*: its pixels to the picture's along x and y. *RMSE* and *largest*: \
          linear\ndifference from the scene's own kernel with every pixel's own rays by Embree and \
-         no blur."
+         no blur.\n*Lit otherwise*: pixels at the border of a shadow whose place in the lamp's map \
+         follows from the device's own point; it is\nlit where the spec's is not, or the reverse, and \
+         is as far off as direct light is bright; *elsewhere* is *largest* without them.\nThis \
+         does not hide an error: what an adapter makes of its own points is compared with what the \
+         spec makes of them, before it\nis timed, at each pixel, but for stages gather and block (*A* \
+         and *B*), of which at most {SAMPLE} pixels of B are looked at.\n*Memory*: the buffers that \
+         stages share, the blockers and their grid among them, without the triangles that are drawn."
     )
 }
 
@@ -123,6 +152,7 @@ fn how(runs: u32) -> String {
 pub fn csv(frames: &Frames) -> String {
     let mut text = VALUES.join(",") + "\n";
     for row in &frames.rows {
+        let of = |text: fn(OfAdapter) -> String| row.own.map_or_else(String::new, text);
         let whole = [("frame", row.frame)];
         for (part, time) in whole.iter().chain(&row.parts) {
             let values = [
@@ -144,6 +174,9 @@ pub fn csv(frames: &Frames) -> String {
                 number(row.frame.median),
                 number(row.rmse),
                 number(row.largest),
+                of(|own| own.lit_otherwise.to_string()),
+                of(|own| number(own.largest_elsewhere)),
+                of(|own| own.memory.to_string()),
             ];
             text += &(values.join(",") + "\n");
         }

@@ -31,9 +31,10 @@ pub struct Args {
     #[command(flatten)]
     on: OnAdapters,
     /// Rounds that count, after two to warm up
-    #[arg(long, value_name = "N", default_value = "15")]
+    #[arg(long, value_name = "N", default_value_t = Options::RUNS)]
     runs: NonZeroU32,
-    /// Rays of a kind on boards; CPUs and software drivers trace at most 32,768 of them
+    /// Rays of a kind on boards; CPUs trace at most 32,768 of them, the spec and software
+    /// drivers 4,096
     #[arg(long, value_name = "N", default_value_t = Options::RAYS,
         value_parser = clap::value_parser!(u32).range(1..=4_194_304))]
     rays: u32,

@@ -9,7 +9,7 @@ use super::super::run_info::today;
 use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
 use crate::bench::Progress;
-use crate::bench::rsm::{Options, csv, lines, page, run as measure};
+use crate::bench::rsm::{Options, csv, lines, page, run as measure, svg};
 use crate::corpus;
 use crate::text::clean;
 
@@ -27,7 +27,7 @@ pub struct Args {
     /// Rounds that count, after two to warm up
     #[arg(long, value_name = "N", default_value = "15")]
     runs: NonZeroU32,
-    /// Where Markdown and CSV go [default: reports/out/bench]
+    /// Where Markdown, CSV and the front go [default: reports/out/bench]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -57,7 +57,12 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         !frames.rows.is_empty(),
         "nothing was measured; see what was not, and why"
     );
-    for (end, text) in [("csv", csv(&frames)), ("md", page(&frames))] {
+    let files = [
+        ("csv", csv(&frames)),
+        ("svg", svg(&frames)),
+        ("md", page(&frames)),
+    ];
+    for (end, text) in files {
         reports::write(&folder.join(format!("{}.{end}", frames.stem())), &text)?;
     }
     writeln!(out, "Results: {}", folder.display())?;

@@ -117,6 +117,14 @@ impl Args {
         Again { legs, options }
     }
 
+    /// Options that are chosen, and that only scenes which are rasterised know.
+    pub(super) fn of_frames_alone(&self) -> Option<String> {
+        let from = self.gpu_from.is_some().then_some("--gpu-from");
+        let vertex = (self.vertex != Vertices::default()).then_some("--vertex");
+        let chosen: Vec<&str> = from.into_iter().chain(vertex).collect();
+        (!chosen.is_empty()).then(|| chosen.join(", "))
+    }
+
     pub(super) fn options(&self) -> anyhow::Result<Options> {
         let wanted = |leg| self.leg.is_empty() || self.leg.contains(&leg);
         let from = self

@@ -31,7 +31,7 @@ use triptych_spec::grid::{Blockers, Grid};
 use crate::embree::rays::RayAnswers;
 use crate::embree::rays::bound::{Met, Pair, pair};
 use crate::embree::{EmbreeError, Hit};
-pub use vote::{RayConflict, RayDisagreement, RayVote};
+pub use vote::{OfKind, RayConflict, RayDisagreement, RayVote};
 
 /// Rays that one task works through; the result does not depend on it.
 const CHUNK: usize = 1024;
@@ -68,6 +68,29 @@ pub fn compare_rays<E: RayAnswers>(
     let mut total = RayVote::default();
     for chunk in chunks {
         total.add(chunk?);
+    }
+    Ok(total)
+}
+
+/// The same, with class edge counted for each kind; `kinds` are names and where each kind ends
+/// in `rays`, rising. Rays behind the last are not asked.
+///
+/// # Errors
+/// The first error that Embree reports, in order of rays.
+pub fn compare_kinds<E: RayAnswers>(
+    grid: &Grid,
+    blockers: &Blockers,
+    rays: &[Ray],
+    kinds: impl IntoIterator<Item = (&'static str, usize)>,
+    query: Query,
+    embree: &E,
+) -> Result<RayVote, EmbreeError> {
+    let mut total = RayVote::default();
+    let mut start = 0;
+    for (name, end) in kinds {
+        let vote = compare_rays(grid, blockers, &rays[start..end], query, embree)?;
+        total.add_kind(name, vote, start);
+        start = end;
     }
     Ok(total)
 }

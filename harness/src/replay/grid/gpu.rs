@@ -167,6 +167,7 @@ impl<'a> GridLeg<'a> {
 
         let own = triptych_spec::grid::scan(&seen.value);
         let own = self.spec.derive(own.unwrap_or_default());
+        let counts = seen.value;
         let seen = stages.scan()?;
         let seen = self.seen(seen, stages);
         let judgement = compare(&own, &seen, |a, b| judge::offsets(a, b));
@@ -180,6 +181,10 @@ impl<'a> GridLeg<'a> {
         };
         let filled = stages.fill(entries, entries)?;
         let seen = self.seen(filled, stages);
+        if self.capacity != Capacity::All {
+            stages.give_counts(&counts)?;
+            self.fewer_overflowed(stages, rows, [&offsets, &seen.value])?;
+        }
         let bounds = self
             .spec
             .map(|s| (s.runs(), s.box_runs()))
@@ -192,6 +197,25 @@ impl<'a> GridLeg<'a> {
             judge::within(*least, seen, *most)
         });
         rows.add("fill", &bounds, &seen, judgement);
+        Ok(())
+    }
+
+    /// An attempt without room for all, against the lists that the device fills with room: which
+    /// they are to be is judged of those. Counts are given.
+    fn fewer_overflowed(
+        &self,
+        stages: &mut Stages<'_>,
+        rows: &mut Rows,
+        [offsets, prims]: [&[u32]; 2],
+    ) -> Result<(), GpuError> {
+        let entries = u32::try_from(prims.len()).expect("at most ENTRIES_MAX");
+        let capacity = self.capacity.nodes(entries);
+        let seen = stages.fill(entries, capacity)?;
+        let seen = self.seen(seen, stages);
+        let own = self.spec.derive(Runs { offsets, prims });
+        let mut judgement = compare(&own, &seen, |a, b| judge::overflowed(*a, b));
+        judgement.note = format!("fill: room for {capacity} of {entries}");
+        rows.add("overflow", &own, &seen, judgement);
         Ok(())
     }
 

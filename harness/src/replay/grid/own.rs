@@ -68,7 +68,8 @@ impl GridLeg<'_> {
         Ok(sound.then_some([offsets, prims]))
     }
 
-    /// What the device sees through its own lists, for the report; `None` if they are damaged.
+    /// What the device sees through its own lists, for the report; `None` if they are damaged, or
+    /// nobody looks.
     ///
     /// # Errors
     /// Whatever the device reports.
@@ -77,7 +78,9 @@ impl GridLeg<'_> {
         if self.own_lists(&mut stages)?.is_none() {
             return Ok(None);
         }
-        let view = View::new(&self.spec.value.grid);
+        let Some(view) = View::new(&self.spec.value.grid) else {
+            return Ok(None);
+        };
         let seen = view.seen(scene, |rays, query| {
             let hits = stages.trace(rays, query)?;
             let met = |hit: &Hit| Some((met(hit)?, f64::from(hit.time)));

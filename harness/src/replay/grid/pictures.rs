@@ -37,18 +37,19 @@ pub(super) fn leg(view: &View<'_>, label: &str, pixels: &[[f32; 3]]) -> Picture 
     }
 }
 
-/// What the spec sees, and three maps: entries, longest lists, hits.
-pub(super) fn spec(run: &GridRun, scene: &Scene) -> [Picture; 4] {
-    let view = View::new(&run.grid);
+/// What the spec sees, and three maps: entries, longest lists, hits; `None` if that would take too
+/// long.
+pub(super) fn spec(run: &GridRun, scene: &Scene) -> Option<[Picture; 4]> {
+    let view = View::new(&run.grid)?;
     let seen: Result<_, std::convert::Infallible> =
         view.seen(scene, |rays, query| Ok(asked(run, rays, query)));
     let Ok(seen) = seen;
-    [
+    Some([
         leg(&view, "spec", &seen),
         entries(run, &view),
         longest(run, &view),
         hits(run, &view),
-    ]
+    ])
 }
 
 /// The spec's answers, the work spread over all cores.
@@ -64,9 +65,11 @@ fn asked(run: &GridRun, rays: &[Ray], query: Query) -> Met {
     rays.par_iter().map(met).collect()
 }
 
-/// What Embree sees.
-pub(super) fn embree(run: &GridRun, scene: &Scene) -> Result<Picture, EmbreeError> {
-    let view = View::new(&run.grid);
+/// What Embree sees, if anyone looks.
+pub(super) fn embree(run: &GridRun, scene: &Scene) -> Result<Option<Picture>, EmbreeError> {
+    let Some(view) = View::new(&run.grid) else {
+        return Ok(None);
+    };
     let rays = RayScene::new(&run.blockers)?;
     let seen = view.seen(scene, |asked, query| {
         let met = |ray: &Ray| match query {
@@ -76,7 +79,7 @@ pub(super) fn embree(run: &GridRun, scene: &Scene) -> Result<Picture, EmbreeErro
         let met = asked.iter().map(met).collect();
         rays.check().map(|()| met)
     })?;
-    Ok(leg(&view, "embree", &seen))
+    Ok(Some(leg(&view, "embree", &seen)))
 }
 
 fn entries(run: &GridRun, view: &View<'_>) -> Picture {

@@ -2,23 +2,21 @@
 
 use std::time::Duration;
 
+use rayon::prelude::*;
 use triptych_spec::grid::lattice::{Lattice, LatticeError};
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::{Closest, trace};
-use triptych_spec::grid::{Blockers, Cells, Grid, Membership, axes, count, fill, scan};
+use triptych_spec::grid::{Blockers, Cells, Grid, GridError, Membership, axes, count, fill, scan};
 
 use crate::compare::grid::Runs;
 use crate::rays::{Kind, draw};
 use crate::replay::spec::timed;
-use crate::scene::Loaded;
+use crate::replay::work::{self, Meter, WORK_MAX};
+use crate::scene::{Loaded, Mistake};
 
 /// How much of the lattice is left around the blockers, for rays that start there: an eighth
 /// of their box on each side.
 const AROUND: f64 = 1.25;
-
-/// Most triangles that rays may be held against: their number times the longest list. More
-/// take a quarter of an hour, on one core.
-pub const WORK_MAX: u64 = 1 << 34;
 
 /// Everything that the spec says about a scene's grid.
 pub struct GridRun {
@@ -62,11 +60,11 @@ impl GridRun {
     ///
     /// # Errors
     /// One line for a scene beyond the limits of grids.
-    pub fn new(loaded: &Loaded) -> Result<Self, String> {
+    pub fn new(loaded: &Loaded) -> Result<Self, Mistake> {
         let section = loaded.file.grid.unwrap_or_default();
         let (lattice, blockers) = blockers(loaded)?;
         let membership = section.membership();
-        let limit = |e: triptych_spec::grid::GridError| e.to_string();
+        let limit = |e: GridError| Mistake::of("grid.resolution", e.to_string());
         let axes = axes(&blockers, section.resolution()).map_err(limit)?;
         let cells = Cells {
             axes: &axes,
@@ -88,18 +86,8 @@ impl GridRun {
             offsets,
             prims,
         };
-        let asked: u64 = Kind::ALL
-            .iter()
-            .map(|kind| u64::from(kind.count(&section.rays)))
-            .sum();
-        let longest = counts.iter().max().map_or(0, |longest| u64::from(*longest));
-        if asked * longest > WORK_MAX {
-            return Err(format!(
-                "{asked} rays and a list of {longest} triangles: their product is at most \
-                 {WORK_MAX}; use fewer rays or more cells"
-            ));
-        }
         let (rays, ends) = draw(&blockers, &grid, loaded.file.seed, &section.rays);
+        within(&grid, &rays)?;
         let (answers, trace) = timed(|| trace(&grid, &blockers, &rays));
         Ok(Self {
             lattice,
@@ -150,6 +138,27 @@ fn runs(grid: &Grid) -> Runs<'_> {
     Runs {
         offsets: &grid.offsets,
         prims: &grid.prims,
+    }
+}
+
+/// Refuses rays that would take too long.
+fn within(grid: &Grid, rays: &[Ray]) -> Result<(), Mistake> {
+    let asked = rays.len() as u64;
+    // Where no rays could, those of this scene need not be counted.
+    if asked.saturating_mul(work::most(grid).total()) <= WORK_MAX {
+        return Ok(());
+    }
+    let meter = Meter::new(WORK_MAX);
+    let takes = |ray: &Ray| meter.takes(work::of(grid, *ray).total());
+    match rays.par_iter().all(takes) {
+        true => Ok(()),
+        false => Err(Mistake::of(
+            "grid.rays",
+            format!(
+                "{asked} rays pass more than {WORK_MAX} cells and triangles in their lists, the \
+                 limit; ask for fewer rays, or for cells that list fewer triangles"
+            ),
+        )),
     }
 }
 

@@ -7,16 +7,8 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 use triptych_spec::scene::{Scene, Size};
 
-/// Pixels along the longer side of a picture, if its rays cost no more than [`WORK`].
-const SIDE: u32 = 256;
-
-/// Least pixels along a side, so that what is flat is seen at all.
-const SIDE_MIN: u32 = 16;
-
-/// How many cells and triangles the rays of a picture may pass and be held against: all cells
-/// behind their pixels, and what these list. A software driver takes seconds for as many; beyond, pictures have half
-/// as many pixels a side, or fewer yet.
-const WORK: u64 = 1 << 24;
+pub(super) use size::MOST;
+use size::{SIDE, sized};
 
 /// Where the light is, seen from the picture: to the right, up, and towards the eye.
 const LIGHT: [f64; 3] = [-0.5, 0.7, 1.0];
@@ -57,7 +49,8 @@ pub(super) struct View<'a> {
 const CLOSED: (f64, u32) = (0.9, 8);
 
 impl<'a> View<'a> {
-    pub(super) fn new(grid: &'a Grid) -> Self {
+    /// `None` if even the smallest picture would take too long.
+    pub(super) fn new(grid: &'a Grid) -> Option<Self> {
         let side = |axis: usize| {
             let [low, high] = ends(&grid.axes[axis]);
             f64::from(high) - f64::from(low)
@@ -79,20 +72,12 @@ impl<'a> View<'a> {
             depth,
             near: ends(&grid.axes[depth])[1],
         };
-        let most = view.size;
-        let entries = view.columns(u32::saturating_add);
-        let cells = u64::from(grid.axes[depth].cells());
-        let work: u64 = entries.iter().map(|list| cells + u64::from(*list)).sum();
-        let halvings = (0..4).find(|n| work >> (2 * n) <= WORK).unwrap_or(4);
-        view.size = Size {
-            width: (most.width >> halvings).max(SIDE_MIN),
-            height: (most.height >> halvings).max(SIDE_MIN),
-        };
+        view = view.affordable()?;
         if view.is_closed() {
             let boundaries = grid.axes[depth].boundaries();
             view.near = boundaries[boundaries.len() / 2];
         }
-        view
+        Some(view)
     }
 
     /// Whether there is nothing to see from outside but a front.
@@ -245,22 +230,6 @@ impl<'a> View<'a> {
     }
 }
 
-/// Of this shape, the longer side so many pixels.
-fn sized(sides: [f64; 2], longer: u32) -> Size {
-    let long = sides[0].max(sides[1]);
-    let [width, height] = sides.map(|side| {
-        let pixels = (f64::from(longer) * side / long).round();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a share of `longer`"
-        )]
-        let pixels = pixels as u32;
-        pixels.max(SIDE_MIN)
-    });
-    Size { width, height }
-}
-
 /// The outermost boundaries.
 fn ends(axis: &Axis) -> [i32; 2] {
     let boundaries = axis.boundaries();
@@ -273,5 +242,6 @@ fn round(x: f64) -> i32 {
     integer
 }
 
+mod size;
 #[cfg(test)]
 mod tests;

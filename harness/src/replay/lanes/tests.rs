@@ -64,12 +64,12 @@ fn the_first_piece_that_stops_is_told() {
         lane,
         work: Box::new(move |_: &mut Run<'_>| {
             thread::sleep(Duration::from_millis(wait));
-            Err(Stop::Input(words.to_owned()))
+            Err(Stop::Input(words.to_owned().into()))
         }),
     };
     let tasks = vec![stops(1, "first", 30), stops(0, "second", 0)];
-    let Err(Stop::Input(words)) = run.side_by_side(tasks) else {
+    let Err(Stop::Input(mistake)) = run.side_by_side(tasks) else {
         panic!("it stops");
     };
-    assert_eq!(words, "first");
+    assert_eq!(mistake.message, "first");
 }

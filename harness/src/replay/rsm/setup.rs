@@ -4,14 +4,15 @@
 use triptych_spec::camera::{Camera, Projection};
 use triptych_spec::grid::lattice::{Lattice, LatticeError, Point};
 use triptych_spec::grid::resolution::Resolution;
-use triptych_spec::grid::{Blockers, Grid, Membership};
+use triptych_spec::grid::{Blockers, ENTRIES_MAX, Grid, GridError, Membership};
 use triptych_spec::matrix::Matrix;
-use triptych_spec::rsm::{BIAS_MAX, Lamp, Model, OFFSET_MIN, Parameters, RsmError, View};
+use triptych_spec::rsm::{BIAS_MAX, Lamp, Model, OFFSET_MIN, Parameters, View};
 use triptych_spec::vertex::DEPTH_ONE;
 
-use crate::scene::Loaded;
+use super::told::Told;
 use crate::scene::file::MeshEntry;
 use crate::scene::rsm::Rsm;
+use crate::scene::{Loaded, Mistake};
 use crate::vector::{length, sub};
 
 /// Distance from a plane within which points are one surface, by default: a 256th of the
@@ -50,31 +51,41 @@ impl Setup {
     /// Of a scene with an `[rsm]`.
     ///
     /// # Errors
-    /// Coordinates that are not finite, and whatever exceeds a limit of the spec, in one line.
-    pub fn new(loaded: &Loaded) -> Result<Self, String> {
-        let rsm = loaded.file.rsm.as_ref().ok_or("has no [rsm]")?.get_ref();
+    /// Coordinates that are not finite, and whatever exceeds a limit of the spec, in one line, with
+    /// the key to change.
+    pub fn new(loaded: &Loaded) -> Result<Self, Mistake> {
+        let rsm = loaded.file.rsm.as_ref();
+        let rsm = rsm.ok_or_else(|| "has no [rsm]".to_owned())?.get_ref();
         let eye = loaded.world.camera;
         let light = rsm.lamp.get_ref().camera()?;
         let lattice = lattice(loaded, rsm.frames.0, [&eye, &light])?;
-        let words = |e: RsmError| told(&e, &lattice);
-        let lamp = View::new(&light, &lattice, rsm.map.0).map_err(words)?;
+        let told = Told {
+            rsm,
+            light: &light,
+            lattice: &lattice,
+        };
+        let view =
+            |key, camera, size| View::new(camera, &lattice, size).map_err(|e| told.view(key, &e));
+        let lamp = view("rsm.lamp", &light, rsm.map.0)?;
         let (strength, reference) = bright(rsm, &light, &lattice);
-        let setup = Self {
-            eye: View::new(&eye, &lattice, loaded.scene.size).map_err(words)?,
-            lamp: Lamp::new(lamp, strength, reference).map_err(words)?,
-            parameters: parameters(rsm, &light, &lattice),
+        let lamp = Lamp::new(lamp, strength, reference).map_err(|e| told.lamp(&e))?;
+        let parameters = parameters(rsm, &light, &lattice);
+        let checked = parameters.check(loaded.scene.size);
+        checked.map_err(|e| told.parameters(&e))?;
+        Ok(Self {
+            eye: view("camera", &eye, loaded.scene.size)?,
+            lamp,
+            parameters,
             frames: rsm.frames.0,
             lattice,
-        };
-        setup.parameters.check(loaded.scene.size).map_err(words)?;
-        Ok(setup)
+        })
     }
 
     /// What a frame is made of; the blockers' cells are built anew for each.
     ///
     /// # Errors
     /// Whatever exceeds a limit of the spec, in one line.
-    pub fn parts(&self, loaded: &Loaded, frame: u32) -> Result<Parts, String> {
+    pub fn parts(&self, loaded: &Loaded, frame: u32) -> Result<Parts, Mistake> {
         let points = points(loaded, frame);
         let scene = &loaded.scene;
         let entries = loaded.entries();
@@ -95,24 +106,26 @@ impl Setup {
         let grid = Grid::build(&blockers, Resolution::FromScene, Membership::Box);
         Ok(Parts {
             model: model.map_err(|e| e.to_string())?,
-            grid: grid.map_err(|e| e.to_string())?,
+            grid: grid.map_err(|e| cells(frame, &e))?,
             blockers,
         })
     }
 }
 
-/// What the spec refuses, with the unit of what a scene states in another one.
-fn told(error: &RsmError, lattice: &Lattice) -> String {
-    let lengths = ["the reference distance", "the squared distance", "the edge"];
-    match error {
-        RsmError::Limit { name, .. } if lengths.contains(name) => {
+/// Why blockers have no cells. Nobody states how many there are.
+fn cells(frame: u32, error: &GridError) -> Mistake {
+    let of = match error {
+        GridError::Entries(entries) => {
             format!(
-                "{error}, in steps of the lattice of 2^{} units",
-                lattice.exponent
+                "{entries} entries in the cells of the blockers, and {ENTRIES_MAX} are the limit"
             )
         }
         _ => error.to_string(),
-    }
+    };
+    Mistake::of(
+        "rsm",
+        format!("frame {}: {of}; use simpler blockers", frame + 1),
+    )
 }
 
 /// Triangles with only those vertices that they use, in order of first use.
@@ -222,14 +235,9 @@ fn nearest(x: f64) -> u64 {
 /// spec to refuse.
 fn parameters(rsm: &Rsm, light: &Camera, lattice: &Lattice) -> Parameters {
     let distance = length(sub(light.target, light.eye));
-    let side = match light.projection {
-        Projection::Perspective { fov } => 2.0 * libm::tan(fov.to_radians() / 2.0) * distance,
-        Projection::Orthographic { height } => height,
-    };
-    let texel = side / f64::from(rsm.map.0.height);
+    let texel = texel(rsm, light);
     let bias = rsm.bias.map_or(2.0 * texel, |length| length.0);
-    let clamp = 2.0 * texel * f64::from(rsm.stride.0);
-    let clamp = steps(lattice, rsm.clamp.map_or(clamp, |length| length.0));
+    let clamp = steps(lattice, clamp(rsm, light));
     let edge = rsm.edge.map(|length| steps(lattice, length.0));
     let edge = edge.map(|steps| u32::try_from(steps).unwrap_or(u32::MAX));
     Parameters {
@@ -242,6 +250,24 @@ fn parameters(rsm: &Rsm, light: &Camera, lattice: &Lattice) -> Parameters {
         offset: rsm.offset.0.max(OFFSET_MIN),
         edge: edge.unwrap_or(EDGE),
     }
+}
+
+/// How wide a texel is at the lamp's target.
+fn texel(rsm: &Rsm, light: &Camera) -> f64 {
+    let side = match light.projection {
+        Projection::Perspective { fov } => {
+            let distance = length(sub(light.target, light.eye));
+            2.0 * libm::tan(fov.to_radians() / 2.0) * distance
+        }
+        Projection::Orthographic { height } => height,
+    };
+    side / f64::from(rsm.map.0.height)
+}
+
+/// As which length shorter ones count.
+pub(super) fn clamp(rsm: &Rsm, light: &Camera) -> f64 {
+    let default = || 2.0 * texel(rsm, light) * f64::from(rsm.stride.0);
+    rsm.clamp.map_or_else(default, |length| length.0)
 }
 
 /// Depth keys that a length along a camera's axis takes at a distance. All depths are equal

@@ -7,16 +7,13 @@ use triptych_spec::rsm::{
     place, rsm,
 };
 
+use super::limits::Limits;
 use super::setup::{Parts, Setup};
 use crate::plan::RsmPlan;
 use crate::replay::rows::Spot;
 use crate::replay::spec::timed;
 use crate::report::Picture;
-use crate::scene::Loaded;
-
-/// Most triangles that rays may be held against: pairs of a pixel of buffer B and a texel of
-/// its kernel, times the longest list. More take a quarter of an hour, on one core.
-pub const WORK_MAX: u64 = 1 << 34;
+use crate::scene::{Loaded, Mistake};
 
 /// Everything that the spec says about a scene with indirect light.
 pub struct RsmRun {
@@ -66,17 +63,23 @@ impl RsmRun {
     /// give the same.
     ///
     /// # Errors
-    /// One line for a scene beyond the limits of the spec.
-    pub fn new(loaded: &Loaded, skip: bool) -> Result<Self, String> {
+    /// One line for a scene beyond the limits of the spec, with the key to change.
+    pub fn new(loaded: &Loaded, skip: bool) -> Result<Self, Mistake> {
         let plan = RsmPlan::new(loaded, skip);
         let setup = Setup::new(loaded)?;
         let background = loaded.scene.background;
-        let frame = |number| {
+        let mut limits = Limits::new(&setup);
+        let part = |number| {
             let (parts, grid) = timed(|| setup.parts(loaded, number));
             let parts = parts?;
-            within(&setup, &parts)?;
+            limits.add(&setup, &parts)?;
+            Ok((parts, grid))
+        };
+        let parts = (0..setup.frames).map(part);
+        let parts = parts.collect::<Result<Vec<_>, Mistake>>()?;
+        let frame = |(parts, grid)| {
             let setting = setting(&setup, &parts, background);
-            let (frame, times) = render(&setting, &plan);
+            let (frame, times) = render(&setting, &plan, &limits)?;
             let times = Times { grid, ..times };
             Ok(RsmFrame {
                 parts,
@@ -84,9 +87,8 @@ impl RsmRun {
                 times,
             })
         };
-        let frames = (0..setup.frames)
-            .map(frame)
-            .collect::<Result<_, String>>()?;
+        let frames = parts.into_iter().map(frame);
+        let frames = frames.collect::<Result<_, Mistake>>()?;
         Ok(Self {
             setup,
             frames,
@@ -146,24 +148,15 @@ fn setting<'s>(setup: &'s Setup, parts: &'s Parts, background: [f32; 3]) -> Sett
     }
 }
 
-/// Refuses rays that would take too long.
-fn within(setup: &Setup, parts: &Parts) -> Result<(), String> {
-    let lists = parts.grid.offsets.windows(2).map(|w| w[1] - w[0]);
-    let longest = u64::from(lists.max().unwrap_or(0));
-    let side = u64::from(setup.parameters.side());
-    let coarse = setup.parameters.coarse(setup.eye.size).pixels() as u64;
-    let rays = coarse * side * side;
-    match rays.saturating_mul(longest) > WORK_MAX {
-        false => Ok(()),
-        true => Err(format!(
-            "{rays} rays at most and a list of {longest} triangles: their product is at most \
-             {WORK_MAX}; use a smaller kernel, a larger divisor or simpler blockers"
-        )),
-    }
-}
-
 /// [`Frame::render`], with the time of each stage, and without those that change nothing.
-fn render(setting: &Setting<'_>, plan: &RsmPlan) -> (Frame, Times) {
+///
+/// # Errors
+/// Rays of stage `block` that would take too long.
+fn render(
+    setting: &Setting<'_>,
+    plan: &RsmPlan,
+    limits: &Limits,
+) -> Result<(Frame, Times), Mistake> {
     let Setting {
         model,
         eye,
@@ -173,49 +166,45 @@ fn render(setting: &Setting<'_>, plan: &RsmPlan) -> (Frame, Times) {
         parameters,
         ..
     } = setting;
-    let (seen, at_gbuffer) = timed(|| gbuffer(model, eye, parameters));
-    let (rsm, at_rsm) = timed(|| rsm(model, lamp, parameters));
-    let (places, at_place) = timed(|| place(&lamp.view, &seen));
+    let mut times = Times::default();
+    let (seen, at) = timed(|| gbuffer(model, eye, parameters));
+    times.gbuffer = at;
+    let (rsm, at) = timed(|| rsm(model, lamp, parameters));
+    times.rsm = at;
+    let (places, at) = timed(|| place(&lamp.view, &seen));
+    times.place = at;
     let (lights, size) = (rsm.lights(), rsm.seen.size);
-    let (direct, at_direct) =
-        timed(|| direct(model, &seen, &places, lamp, &rsm.seen.keys, parameters));
-    let (all, at_gather) = timed(|| gather(model, &seen, &places, &lights, size, parameters));
+    let (direct, at) = timed(|| direct(model, &seen, &places, lamp, &rsm.seen.keys, parameters));
+    times.direct = at;
+    let (all, at) = timed(|| gather(model, &seen, &places, &lights, size, parameters));
+    times.gather = at;
     let coarse = Coarse::new(&seen, parameters);
-    let cells = (*grid, *blockers);
-    let (blocked, at_block) = match plan.skipped("block") {
-        None => timed(|| block(model, &seen, &places, &lights, size, cells, parameters)),
-        Some(_) => (nothing(&coarse, parameters.words()), Duration::ZERO),
-    };
-    let (blurred, at_blur) = match plan.skipped("blur") {
-        None => timed(|| blur(model, &coarse, &blocked.light, parameters)),
-        Some(_) => (blocked.light.clone(), Duration::ZERO),
-    };
     let mut frame = Frame {
         seen,
         rsm,
         places,
         direct,
         all,
-        blocked,
+        blocked: nothing(&coarse, parameters.words()),
         coarse,
-        blurred,
+        blurred: Vec::new(),
         picture: Vec::new(),
     };
-    let light = [&frame.direct.light[..], &frame.all];
-    let (picture, at_compose) = timed(|| composed(setting, &frame, light, &frame.blurred));
-    frame.picture = picture;
-    let times = Times {
-        grid: Duration::ZERO,
-        gbuffer: at_gbuffer,
-        rsm: at_rsm,
-        place: at_place,
-        direct: at_direct,
-        gather: at_gather,
-        block: at_block,
-        blur: at_blur,
-        compose: at_compose,
+    if plan.skipped("block").is_none() {
+        limits.rays(setting, &frame, &lights)?;
+        let Frame { seen, places, .. } = &frame;
+        let cells = (*grid, *blockers);
+        (frame.blocked, times.block) =
+            timed(|| block(model, seen, places, &lights, size, cells, parameters));
+    }
+    (frame.blurred, times.blur) = match plan.skipped("blur") {
+        None => timed(|| blur(model, &frame.coarse, &frame.blocked.light, parameters)),
+        Some(_) => (frame.blocked.light.clone(), Duration::ZERO),
     };
-    (frame, times)
+    let light = [&frame.direct.light[..], &frame.all];
+    let (picture, at) = timed(|| composed(setting, &frame, light, &frame.blurred));
+    (frame.picture, times.compose) = (picture, at);
+    Ok((frame, times))
 }
 
 /// Buffer B where nothing is blocked, and no ray is asked for.

@@ -109,22 +109,48 @@ fn a_reference_beyond_the_lattice_is_halved() {
         f64::from(lamp.strength[0]) * reference * reference
     });
     assert!((a - b).abs() <= 1e-6 * a, "{a} {b}");
-    let error = Setup::new(&scene("reference = 1e300", SPOT)).err();
-    let error = error.expect("stronger than any number");
-    assert!(error.contains("must be finite"), "{error}");
-    let error = Setup::new(&scene("reference = 0", SPOT)).err();
-    assert!(error.is_some_and(|e| e.starts_with("the reference distance is 0;")));
 }
 
+/// What is wrong, by key, in the scene's own units.
 #[test]
-fn limits_are_told_by_name() {
-    let error = |keys: &str| Setup::new(&scene(keys, SUN)).err().expect("beyond a limit");
-    let edge = error("edge = 1");
+fn limits_are_told_by_key() {
+    let error = |keys: &str, lamp: &str| {
+        let loaded = scene(keys, lamp);
+        let error = Setup::new(&loaded).err().expect("beyond a limit");
+        let line = error.key.and_then(|key| loaded.lines.of(key));
+        (line.expect("a line"), error.to_string())
+    };
+    // The keys are on line 18, the lamp is on the line after them.
+    let told = |keys: &str, lamp: &str, line: usize, words: &str| {
+        let (at, error) = error(keys, lamp);
+        assert_eq!(error, words);
+        assert_eq!(at, line, "{error}");
+    };
+    let light = "rsm.reference: a strength of [1.0, 1.0, 1.0] at a distance of 1e300 is more light \
+                 than 32-bit numbers hold; a shorter one, or a smaller strength, is right";
+    told("reference = 1e300", SPOT, 18, light);
+    let none = "rsm.reference: 0e0 is no distance of a light; 2.384e-7, half a step of \
+                the lattice, or more is right";
+    told("reference = 0", SPOT, 18, none);
+    let edge = "rsm.edge: 1e0 is outside 0 to 5.000e-1, a 16th of the lattice's side";
+    told("edge = 1", SUN, 18, edge);
+    let clamp = "rsm.clamp: 1e300 is outside 0 to 1.386e1, the lattice's diagonal";
+    told("clamp = 1e300", SUN, 18, clamp);
+    let huge = "eye = [2, 2, 0], target = [-2, 2, 0], height = 1e30, near = 1, far = 9";
+    let (line, words) = error("", huge);
+    assert_eq!(line, 19, "{words}");
     assert!(
-        edge.starts_with("the edge is ") && edge.ends_with(" lattice of 2^-21 units"),
-        "{edge}"
+        words.starts_with("rsm.lamp.height: two texels of the kernel"),
+        "{words}"
     );
-    assert!(error("clamp = 1e9").starts_with("the squared distance is "));
+    assert!(
+        words.ends_with("state clamp or a smaller height"),
+        "{words}"
+    );
+    let wide = "eye = [2, 2, 0], target = [-2, 2, 0], fov = 179.999999, near = 1, far = 9";
+    let (line, words) = error("", wide);
+    assert_eq!(line, 19, "{words}");
+    assert!(words.ends_with("state clamp or a smaller fov"), "{words}");
     // All depths are equal from the largest bias on.
     assert!(Setup::new(&scene("bias = 1e9", SUN)).is_ok());
 }

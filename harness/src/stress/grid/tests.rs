@@ -137,9 +137,15 @@ fn what_must_be_refused_is_and_nothing_else() {
     let cells = Table::default().cells(&m);
     assert_eq!(cells.len(), Table::names().len());
     let said = cells.last().expect("a reason");
-    assert!(said.starts_with("refused: a grid of 134217728"), "{said}");
+    assert!(
+        said.starts_with("refused: grid.resolution: a grid of 134217728"),
+        "{said}"
+    );
     let csv = files::csv(&[m]);
-    assert!(csv.contains("refused: a grid of 134217728 cells"), "{csv}");
+    assert!(
+        csv.contains("refused: grid.resolution: a grid of 134217728 cells"),
+        "{csv}"
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::fmt;
 use crate::cause::Cause;
 use crate::compare::{DESCRIBED_MAX, Judgement};
 use crate::row::Class;
+use crate::text::share;
 
 /// Result of one comparison. Counts are of rays.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,8 +26,21 @@ pub struct RayVote {
     pub error: f64,
     /// Largest error of a time over its bound; infinite if it is no number.
     pub error_over_bound: f64,
+    /// Class edge of each kind of rays, where kinds were told apart; none that has no ray.
+    pub kinds: Vec<OfKind>,
     /// The first disagreements, by ray.
     pub first: Vec<RayDisagreement>,
+}
+
+/// How many rays of a kind are in class edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OfKind {
+    /// The kind.
+    pub name: &'static str,
+    /// Rays that Embree was asked about.
+    pub asked: u64,
+    /// Those of them in class edge.
+    pub edge: u64,
 }
 
 /// A ray of which Embree says what it must not.
@@ -109,9 +123,20 @@ impl RayVote {
         self.times += next.times;
         self.error = self.error.max(next.error);
         self.error_over_bound = self.error_over_bound.max(next.error_over_bound);
+        self.kinds.extend(next.kinds);
         for disagreement in next.first {
             self.keep(disagreement);
         }
+    }
+
+    /// Adds the rays that follow, which are all of a kind and counted from 0.
+    pub(super) fn add_kind(&mut self, name: &'static str, mut next: Self, before: usize) {
+        let (asked, edge) = (next.rays - next.still, next.edge);
+        if asked > 0 {
+            next.kinds.push(OfKind { name, asked, edge });
+        }
+        next.first.iter_mut().for_each(|first| first.ray += before);
+        self.add(next);
     }
 
     /// As a row has it; `edge_budget` is the largest share that may be in class edge. A vote
@@ -132,6 +157,7 @@ impl RayVote {
         };
         if self.disagree == 0 && asked == self.edge {
             let reason = match asked {
+                0 if self.rays == 0 => "no ray is asked for".to_owned(),
                 0 => "no ray moves".to_owned(),
                 _ => format!("all {asked} rays are in class edge"),
             };
@@ -148,6 +174,14 @@ impl fmt::Display for RayVote {
             "{} of {} rays in class edge ({} agree), {} times, error over bound {:.3}",
             self.edge, self.rays, self.agreed_in_edge, self.times, self.error_over_bound,
         )?;
+        let of_kind = |kind: &OfKind| {
+            let part = kind.edge as f64 / kind.asked as f64;
+            format!("{} {}", kind.name, share(part))
+        };
+        let kinds: Vec<String> = self.kinds.iter().map(of_kind).collect();
+        if !kinds.is_empty() {
+            write!(f, "; edge: {}", kinds.join(", "))?;
+        }
         match self.first.first() {
             Some(first) => write!(f, "; {} disagree, first: {first}", self.disagree),
             None => Ok(()),

@@ -10,7 +10,7 @@ use triptych_spec::grid::trace::Query;
 use triptych_spec::grid::{Blockers, Grid, Membership};
 
 use super::Random;
-use crate::compare::embree::{RayVote, compare_rays};
+use crate::compare::embree::{OfKind, RayVote, compare_kinds, compare_rays};
 use crate::embree::rays::bound::{Pair, pair};
 use crate::embree::rays::{RayAnswers, RayScene};
 use crate::embree::{EmbreeError, Hit};
@@ -196,6 +196,38 @@ fn rays_at_corners_and_edges_are_in_class_edge() {
             query == Query::Any || vote.agreed_in_edge < vote.edge,
             "neighbours tie: {vote}"
         );
+    }
+}
+
+/// One ray along the border of a sheet, two through both, two that do not move, one beside.
+#[test]
+fn class_edge_is_counted_for_each_kind() {
+    let scene = sheets();
+    let border = Ray::between([-4096, 17, -999], [-4096, 17, 999]);
+    let still = Ray::between([0, 0, 0], [0, 0, 0]);
+    let [through, beside, _] = straight();
+    let rays = [border, through, through, still, still, beside];
+    let kinds = [
+        ("one", 2),
+        ("none", 2),
+        ("two", 3),
+        ("still", 5),
+        ("last", 6),
+    ];
+    let nothing = scene.changed(|_, _| None);
+    for query in QUERIES {
+        let Scene { grid, blockers, .. } = &scene;
+        let vote = compare_kinds(grid, blockers, &rays, kinds, query, &nothing);
+        let vote = vote.expect("no error");
+        let kind = |name, asked, edge| OfKind { name, asked, edge };
+        let expected = [kind("one", 2, 1), kind("two", 1, 0), kind("last", 1, 0)];
+        assert_eq!(vote.kinds, expected, "{vote}");
+        assert_eq!((vote.rays, vote.still, vote.edge), (6, 2, 1), "{vote}");
+        let missed: Vec<usize> = vote.first.iter().map(|d| d.ray).collect();
+        assert_eq!(missed, [1, 2], "numbers are those of all rays: {vote}");
+        let note = vote.judgement(None).note;
+        let words = "; edge: one 50.0 %, two 0 %, last 0 %; 2 disagree, first: ray 1: ";
+        assert!(note.contains(words), "{note}");
     }
 }
 

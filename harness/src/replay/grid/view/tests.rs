@@ -47,12 +47,16 @@ fn grid(blockers: &Blockers, cells: [u32; 3]) -> Grid {
     grid.expect("within the limits")
 }
 
+fn shown(grid: &Grid) -> View<'_> {
+    View::new(grid).expect("a cheap picture")
+}
+
 #[test]
 fn a_view_is_along_the_shortest_side() {
     let (mut blockers, _) = scene();
     for (turn, direction) in ["−z", "−x", "−y"].into_iter().enumerate() {
         let grid = grid(&blockers, [4, 4, 1]);
-        let view = View::new(&grid);
+        let view = shown(&grid);
         assert_eq!(view.direction(), direction, "turned {turn} times");
         assert_eq!(view.size.width.max(view.size.height), 256);
         assert_eq!(view.size.width.min(view.size.height), 128);
@@ -68,7 +72,7 @@ fn a_view_is_along_the_shortest_side() {
 fn pixels_and_points_belong_together() {
     let (blockers, _) = scene();
     let grid = grid(&blockers, [4, 2, 1]);
-    let view = View::new(&grid);
+    let view = shown(&grid);
     let pixels: Vec<[i32; 2]> = view.pixels().collect();
     assert_eq!(pixels.len(), view.size.pixels());
     let [right, up] = pixels[0];
@@ -88,7 +92,7 @@ fn pixels_and_points_belong_together() {
 fn a_leg_is_seen_with_its_shadows() {
     let (blockers, scene) = scene();
     let grid = grid(&blockers, [8, 4, 1]);
-    let view = View::new(&grid);
+    let view = shown(&grid);
     let ask = |rays: &[Ray], query: Query| -> Result<Met, ()> {
         let met = |ray: &Ray| match query {
             Query::Any => blocked(&grid, &blockers, *ray).then_some((0, 0.0)),
@@ -128,7 +132,7 @@ fn columns_fold_the_cells_behind_each_other() {
         triangles: (0..4).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect(),
     };
     let grid = grid(&blockers, [8, 1, 2]);
-    let view = View::new(&grid);
+    let view = shown(&grid);
     assert_eq!(view.direction(), "−z");
     let pixel = |x: f64| view.pixel([x, 0.0, 0.0]).expect("in view");
     let sum = view.columns(|sum, list| sum + list);
@@ -145,15 +149,34 @@ fn columns_fold_the_cells_behind_each_other() {
 fn what_would_take_long_has_fewer_pixels() {
     let (blockers, _) = scene();
     let mut many = blockers.clone();
-    let list = 1 + u32::try_from(WORK / (256 * 128)).expect("small");
+    let list = 1 + u32::try_from(size::WORK / (256 * 128)).expect("small");
     many.triangles = blockers.triangles.repeat(list as usize / 2 + 1);
     let sides = [blockers, many].map(|blockers| {
         let grid = grid(&blockers, [1; 3]);
-        View::new(&grid).size
+        shown(&grid).size
     });
     let [full, half] = sides.map(|size| [size.width, size.height]);
     assert_eq!(full, [256, 128]);
     assert_eq!(half, [128, 64]);
+}
+
+/// Shadows may cost much more than what is seen: a light from the side passes more cells. Where
+/// both are too much, there is no picture.
+#[test]
+fn what_would_take_hours_is_not_shown() {
+    let (blockers, _) = scene();
+    let of = |copies: usize, cells| {
+        let mut many = blockers.clone();
+        many.triangles = blockers.triangles.repeat(copies);
+        let grid = grid(&many, cells);
+        View::new(&grid).map(|view| [view.size.width, view.size.height])
+    };
+    // As many triangles behind each pixel, and in 26 cells of them on the way to the light.
+    assert_eq!(of(200, [1; 3]), Some([256, 128]));
+    assert_eq!(of(400, [1024, 1, 1]), Some([128, 64]));
+    // 16 x 16 pixels of so many triangles are as many as may be.
+    assert_eq!(of(1 << 17, [1; 3]), Some([16, 16]));
+    assert_eq!(of(1 << 19, [1; 3]), None);
 }
 
 /// A house of which the front hides the inside is cut open; an open one is not.
@@ -179,7 +202,7 @@ fn what_is_closed_in_front_is_cut() {
     let open = of(&[wall(-200), floor(-30_000)]);
     for (blockers, cut) in [(closed, true), (open, false)] {
         let grid = grid(&blockers, [8, 8, 16]);
-        let view = View::new(&grid);
+        let view = shown(&grid);
         assert_eq!((view.direction(), view.is_cut()), ("−z", cut));
         let [_, near] = ends(&grid.axes[2]);
         let start = view.rays()[0].origin[2];

@@ -1,0 +1,58 @@
+//! The front of `bench abuffer`: numbers of nearest layers.
+
+use super::super::{Bench, Row, table};
+use super::{Line, Panel, Plot};
+
+/// The front of a run.
+pub(super) fn plot(bench: &Bench) -> Plot {
+    let legs = bench.legs();
+    let (date, machine) = (&bench.date, &bench.machine);
+    Plot {
+        title: "Time against error: A-buffer, nearest layers".to_owned(),
+        words: format!(
+            "Time against error of the A-buffer with 1, 2, 4, … nearest layers, {date}, {}",
+            machine.slug
+        ),
+        place: format!("{date}, {}", machine.cpu),
+        legend: legs.iter().map(|leg| (*leg).to_owned()).collect(),
+        panels: bench
+            .scenes()
+            .iter()
+            .map(|scene| panel(bench, &legs, scene))
+            .collect(),
+    }
+}
+
+fn panel(bench: &Bench, legs: &[&str], scene: &str) -> Panel {
+    let rows: Vec<&Row> = bench.fastest().filter(|row| row.scene == scene).collect();
+    let line = |(style, leg): (usize, &&str)| Line {
+        style,
+        points: rows
+            .iter()
+            .filter(|row| row.leg == *leg)
+            .map(|row| (row.time.median, row.psnr))
+            .collect(),
+    };
+    Panel {
+        heading: table::heading(bench, scene),
+        lines: legs.iter().enumerate().map(line).collect(),
+        levels: levels(&rows),
+    }
+}
+
+/// The numbers of layers, beside where the first leg's points lie.
+fn levels(rows: &[&Row]) -> Vec<(Option<f64>, String)> {
+    let leg = rows.first().map(|row| row.leg.as_str());
+    let mut own: Vec<&&Row> = rows
+        .iter()
+        .filter(|row| Some(row.leg.as_str()) == leg)
+        .collect();
+    // All layers first, then one, then the others from there on.
+    own.sort_by_key(|row| (!row.all, row.layers));
+    let words = |row: &&&Row| match (row.all, row.layers) {
+        (true, n) => format!("all {n}"),
+        (false, 1) => "1 layer".to_owned(),
+        (false, n) => n.to_string(),
+    };
+    own.iter().map(|row| (row.psnr, words(row))).collect()
+}
