@@ -24,6 +24,11 @@
 //! | `rsm::loose` | whatever WGSL allows stays inside the bounds of all stages, and comes near them |
 //! | `rsm::adapters` | random scenes give the spec's decisions, and colours within bounds, on every adapter |
 //! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
+//! | `ldm::directions` | layered depth maps: equal areas, small diameters, no line twice, furnace; rotations |
+//! | `ldm::maps` | places; lists by brute force; even lists of closed meshes; crops; limits |
+//! | `ldm::traces` | neighbours by brute force and in a stack; a point's own layers; borders |
+//! | `ldm::light` | furnace, walls, ceilings; exact rays as resolution grows; skies |
+//! | `ldm::loose` | whatever WGSL allows stays inside the bounds |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:
@@ -42,6 +47,8 @@ mod camera;
 mod gpu;
 #[path = "laws/grid.rs"]
 mod grid;
+#[path = "laws/ldm.rs"]
+mod ldm;
 #[path = "laws/loose.rs"]
 mod loose;
 #[path = "laws/matrix.rs"]

@@ -111,6 +111,14 @@ impl Bounded {
         (observed - self.value).abs() <= self.bound
     }
 
+    /// A number that is rounded to `f32` once.
+    pub fn once(value: f64) -> Self {
+        Self {
+            value,
+            bound: U * value.abs() + TINY,
+        }
+    }
+
     /// Whether every conforming result compares with zero as this number does.
     pub fn sign_is_certain(self) -> bool {
         self.bound == 0.0 || self.value.abs() > self.bound
@@ -222,5 +230,46 @@ impl Real for Bounded {
     }
     fn certainly_differs(self, other: Self) -> bool {
         (self.value - other.value).abs() > self.bound + other.bound
+    }
+}
+
+/// Adds up numbers in any order.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum {
+    value: f64,
+    /// Of the terms, each as large as an evaluation may have it.
+    size: f64,
+    bound: f64,
+    terms: u32,
+}
+
+impl Sum {
+    /// Adds a term.
+    pub fn add(&mut self, term: Bounded) {
+        self.value += term.value;
+        self.size += term.value.abs() + term.bound;
+        self.bound += term.bound;
+        self.terms += 1;
+    }
+
+    /// How many there are.
+    pub fn terms(&self) -> u32 {
+        self.terms
+    }
+
+    /// The sum of `n` terms in any order is `n - 1` additions: a term meets at most as many
+    /// roundings (Higham, section 4.2), and each sum may be flushed. The first is added to
+    /// 0, exactly. Fusing a product into an addition only spares a rounding.
+    pub fn finish(&self) -> Bounded {
+        let additions = self.terms.saturating_sub(1);
+        // Sums of nothing but zeros are exact.
+        let flushed = if self.size == 0.0 { 0.0 } else { TINY };
+        let rounding = gamma(additions) * self.size + f64::from(additions) * flushed;
+        let bound = self.bound + rounding;
+        let defined = self.size + bound <= f64::from(f32::MAX);
+        Bounded {
+            value: self.value,
+            bound: if defined { bound } else { f64::INFINITY },
+        }
     }
 }

@@ -13,12 +13,14 @@
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 //! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |
+//! | [`ldm`] | build, trace, occlusion, environment | none yet |
 #![forbid(unsafe_code)]
 
 pub mod abuffer;
 pub mod bound;
 pub mod camera;
 pub mod grid;
+pub mod ldm;
 pub mod matrix;
 pub mod raster;
 pub mod rsm;

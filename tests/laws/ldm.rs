@@ -1,0 +1,100 @@
+//! Layered depth maps: directions, maps, what is seen through them.
+
+#[path = "ldm/directions.rs"]
+mod directions;
+#[path = "ldm/light.rs"]
+mod light;
+#[path = "ldm/loose.rs"]
+mod loose;
+#[path = "ldm/maps.rs"]
+mod maps;
+#[path = "ldm/traces.rs"]
+mod traces;
+
+use proptest::prelude::*;
+use triptych_spec::grid::Blockers;
+use triptych_spec::grid::lattice::Point;
+use triptych_spec::ldm::{Maps, Rotation, directions, rotated};
+use triptych_spec::rsm::Face;
+
+/// The box around vertices.
+fn around(vertices: &[Point]) -> [Point; 2] {
+    let end = |f: fn(i32, i32) -> i32, start: i32| {
+        [0, 1, 2].map(|i| vertices.iter().fold(start, |m, v| f(m, v[i])))
+    };
+    [end(i32::min, i32::MAX), end(i32::max, i32::MIN)]
+}
+
+/// Maps of a mesh in `count` directions, turned as in a frame.
+fn maps_of(mesh: &Blockers, count: u32, resolution: u32, frame: u32) -> Maps {
+    let set = rotated(&directions(count).expect("a set"), 7, frame);
+    Maps::new(&set, around(&mesh.vertices), resolution).expect("within the limits")
+}
+
+/// A quad at right angles to z, from corner to corner, as two triangles.
+fn quad(mesh: &mut Blockers, [x0, y0]: [i32; 2], [x1, y1]: [i32; 2], z: i32) {
+    let first = u32::try_from(mesh.vertices.len()).unwrap();
+    mesh.vertices
+        .extend([[x0, y0, z], [x1, y0, z], [x1, y1, z], [x0, y1, z]]);
+    mesh.triangles
+        .extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|row| first + row)));
+}
+
+fn empty() -> Blockers {
+    Blockers {
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+    }
+}
+
+/// A sphere around 0 of so many meridians and parallels.
+fn sphere(radius: f64, around: u32, down: u32) -> Blockers {
+    let at = |i: u32, j: u32| -> Point {
+        let turn = f64::from(i % around) / f64::from(around) * std::f64::consts::TAU;
+        let tilt = f64::from(j) / f64::from(down) * std::f64::consts::PI;
+        let direction = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
+        #[expect(clippy::cast_possible_truncation, reason = "within the lattice")]
+        direction.map(|c| (c * radius).round() as i32)
+    };
+    let row = |i: u32, j: u32| j * around + i % around;
+    let vertices = (0..=down).flat_map(|j| (0..around).map(move |i| at(i, j)));
+    let quads = (0..down).flat_map(|j| (0..around).map(move |i| (i, j)));
+    let halves = quads.flat_map(|(i, j)| {
+        let [a, b, c, d] = [row(i, j), row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    Blockers {
+        vertices: vertices.collect(),
+        triangles: halves.filter(|[a, b, c]| a != b && b != c).collect(),
+    }
+}
+
+/// A coordinate of the lattice, near its middle or anywhere.
+fn coordinate() -> BoxedStrategy<i32> {
+    prop_oneof![-4000..=4000_i32, (-4000..=4000_i32).prop_map(|c| c * 2048)].boxed()
+}
+
+fn point() -> BoxedStrategy<Point> {
+    [coordinate(), coordinate(), coordinate()].boxed()
+}
+
+/// A direction of any.
+fn direction() -> BoxedStrategy<[f64; 3]> {
+    prop_oneof![
+        4 => (any::<u64>(), 1..1000_u32).prop_map(|(seed, frame)| {
+            Rotation::of(seed, frame).turn([0.0, 0.0, 1.0])
+        }),
+        1 => prop::sample::select(vec![
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, -1.0],
+            [0.0, 1.0, 0.0],
+            [0.0, -1.0, 0.0],
+            [1.0, 0.0, 0.0],
+        ]),
+    ]
+    .boxed()
+}
+
+fn normal_of(mesh: &Blockers, triangle: u32) -> Point {
+    Face::new(mesh.corners(triangle)).coarse
+}
