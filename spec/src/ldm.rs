@@ -38,7 +38,7 @@ pub use environment::{Sky, environment};
 pub use map::{KEYS_PER_STEP, Map, Maps, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN};
 pub use occlusion::{Falloff, Open, WEIGHT_BITS, occlusion, openness, weight};
 pub use rotation::{Rotation, rotated};
-pub use trace::{Hits, Receiver, trace};
+pub use trace::{Hits, Receiver, own_band, trace};
 
 use thiserror::Error;
 

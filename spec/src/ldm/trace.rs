@@ -68,7 +68,7 @@ const SLOPE_MAX: u32 = 127;
 /// every component, so a dot product of theirs by less than
 /// `sqrt(3) / 2 * 2^14 * 2 + 1 < 28,380`, by which the numerator is raised and the denominator
 /// lowered; both lose 8 bits, so that the slope with 8 bits behind the point fits in 32.
-pub(super) fn own_band(maps: &Maps, map: &Map, receiver: &Receiver) -> i32 {
+pub fn own_band(maps: &Maps, map: &Map, receiver: &Receiver) -> i32 {
     const OFF: u32 = 28_380;
     // 14 keys a step is more than 8 * sqrt(3), of `KEYS_PER_STEP`.
     let moved = (receiver.off * 14 + 3).cast_signed();
