@@ -17,6 +17,8 @@ use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm::{Maps, Rotation, directions, rotated};
 use triptych_spec::rsm::Face;
 
+use crate::samples::sphere;
+
 /// The box around vertices.
 fn around(vertices: &[Point]) -> [Point; 2] {
     let end = |f: fn(i32, i32) -> i32, start: i32| {
@@ -44,28 +46,6 @@ fn empty() -> Blockers {
     Blockers {
         vertices: Vec::new(),
         triangles: Vec::new(),
-    }
-}
-
-/// A sphere around 0 of so many meridians and parallels.
-fn sphere(radius: f64, around: u32, down: u32) -> Blockers {
-    let at = |i: u32, j: u32| -> Point {
-        let turn = f64::from(i % around) / f64::from(around) * std::f64::consts::TAU;
-        let tilt = f64::from(j) / f64::from(down) * std::f64::consts::PI;
-        let direction = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
-        #[expect(clippy::cast_possible_truncation, reason = "within the lattice")]
-        direction.map(|c| (c * radius).round() as i32)
-    };
-    let row = |i: u32, j: u32| j * around + i % around;
-    let vertices = (0..=down).flat_map(|j| (0..around).map(move |i| at(i, j)));
-    let quads = (0..down).flat_map(|j| (0..around).map(move |i| (i, j)));
-    let halves = quads.flat_map(|(i, j)| {
-        let [a, b, c, d] = [row(i, j), row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)];
-        [[a, b, c], [a, c, d]]
-    });
-    Blockers {
-        vertices: vertices.collect(),
-        triangles: halves.filter(|[a, b, c]| a != b && b != c).collect(),
     }
 }
 

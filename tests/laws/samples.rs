@@ -1,6 +1,8 @@
-//! Random triangles on the sub-pixel grid.
+//! Random triangles on the sub-pixel grid, and a closed mesh on the lattice.
 
 use proptest::prelude::*;
+use triptych_spec::grid::Blockers;
+use triptych_spec::grid::lattice::Point;
 use triptych_spec::raster::{Fragment, cover};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{DEPTH_ONE, GUARD, Primitives, guard_origin};
@@ -141,4 +143,29 @@ pub fn area(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
 /// The first two coordinates.
 pub fn flat([x, y, _]: [i32; 3]) -> [i32; 2] {
     [x, y]
+}
+
+/// A closed surface around 0: a sphere of so many meridians and parallels, stretched to three
+/// radii, its corners snapped. Rows at a pole are at one place, and give triangles without area.
+pub fn sphere(radii: [f64; 3], around: u32, down: u32) -> Blockers {
+    let at = |i: u32, j: u32| -> Point {
+        let (turn, tilt) = (
+            f64::from(i % around) / f64::from(around) * std::f64::consts::TAU,
+            f64::from(j) / f64::from(down) * std::f64::consts::PI,
+        );
+        let direction = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
+        #[expect(clippy::cast_possible_truncation, reason = "within the lattice")]
+        [0, 1, 2].map(|axis| (direction[axis] * radii[axis]).round() as i32)
+    };
+    let row = |i: u32, j: u32| j * around + i % around;
+    let vertices = (0..=down).flat_map(|j| (0..around).map(move |i| at(i, j)));
+    let quads = (0..down).flat_map(|j| (0..around).map(move |i| (i, j)));
+    let halves = quads.flat_map(|(i, j)| {
+        let [a, b, c, d] = [row(i, j), row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    Blockers {
+        vertices: vertices.collect(),
+        triangles: halves.collect(),
+    }
 }

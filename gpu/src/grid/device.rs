@@ -5,7 +5,7 @@ use std::time::Duration;
 use triptych_spec::grid::axis::Axis;
 use triptych_spec::grid::{Blockers, ENTRIES_MAX, Membership};
 
-use super::{CHUNK, Cells, SMALL, exact};
+use super::{CHUNK, Cells, SMALL, STEPS, exact};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -86,6 +86,17 @@ impl<'g> Device<'g> {
     pub(super) fn bytes(&self, build: bool) -> u64 {
         let of_build = if build { self.chunks.size() } else { 0 };
         self.corners.size() + self.boundaries.size() + of_build
+    }
+
+    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry;
+    /// where a dispatch ends, a cell may be looked at again. llvmpipe counts the iterations of a
+    /// whole subgroup, whose rays wait for each other, and leaves all loops after 65,535. So a
+    /// dispatch takes one of them `STEPS` on, or all together as many: it is as if they came one
+    /// after another.
+    pub(super) fn rounds(&self, entries: u64) -> u64 {
+        let cells = u64::from(self.cells.x + self.cells.y + self.cells.z);
+        let lanes = u64::from(self.gpu.info.subgroup_max_size.max(1));
+        lanes * ((cells + entries).div_ceil(u64::from(STEPS - 1)) + 1)
     }
 
     /// One invocation for each item.

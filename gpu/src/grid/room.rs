@@ -82,6 +82,11 @@ impl<'g> Room<'g> {
         build(&self.device, &self.named(), shape)
     }
 
+    /// Dispatches after which every ray is done.
+    pub(crate) fn rounds(&self, shape: Shape) -> u64 {
+        self.device.rounds(shape.entries.into())
+    }
+
     /// As many dispatches of a search of these rays, with what they have met.
     ///
     /// # Errors

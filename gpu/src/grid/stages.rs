@@ -7,7 +7,7 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 
 use super::device::Device;
-use super::{Cells, Entry, FRESH, Hit, Linked, Packed, SHORT, STEPS, TILE, TRACED};
+use super::{Cells, Entry, FRESH, Hit, Linked, Packed, SHORT, TILE, TRACED};
 use crate::error::GpuError;
 
 /// Rays of one dispatch: 32 bytes each, within 128 MiB.
@@ -191,18 +191,6 @@ impl<'g> Stages<'g> {
         self.device.each("trace_bricks", bricks, &buffers)
     }
 
-    /// Dispatches after which every ray is done: it passes a cell once, and with it each entry;
-    /// where a dispatch ends, a cell may be looked at again. llvmpipe counts the iterations of a
-    /// whole subgroup, whose rays wait for each other, and leaves all loops after 65,535. So a
-    /// dispatch takes one of them `STEPS` on, or all together as many: it is as if they came one
-    /// after another.
-    fn rounds(&self) -> u64 {
-        let cells = u64::from(self.device.cells.x + self.device.cells.y + self.device.cells.z);
-        let entries = self.prims.size() / 4;
-        let lanes = u64::from(self.device.gpu.info.subgroup_max_size.max(1));
-        lanes * ((cells + entries).div_ceil(u64::from(STEPS - 1)) + 1)
-    }
-
     fn trace_part(&mut self, rays: &[Ray], query: Query) -> Result<Vec<Hit>, GpuError> {
         let gpu = self.device.gpu;
         let packed: Vec<Packed> = rays.iter().map(Packed::from).collect();
@@ -241,7 +229,7 @@ impl<'g> Stages<'g> {
         };
         let mut time = Duration::ZERO;
         self.dispatches = 0;
-        for _ in 0..self.rounds() {
+        for _ in 0..self.device.rounds(self.prims.size() / 4) {
             self.dispatches += 1;
             time += self.device.each("trace", cells, &buffers)?;
             if self.device.take_unfinished()? == 0 {

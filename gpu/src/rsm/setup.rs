@@ -11,7 +11,7 @@ use super::records::{Light, Place, Surface};
 use super::timed::{Span, Step, Timed};
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
-use crate::grid::{self, Hit, Room, Shape, TRACED};
+use crate::grid::{Hit, Room, Shape, TRACED};
 
 impl Timed<'_> {
     pub(super) fn named(&self) -> Vec<(&str, &wgpu::Buffer)> {
@@ -112,7 +112,7 @@ impl Timed<'_> {
         let asked: Vec<u32> = self.gpu.read(self.buffer("asked"), 1)?;
         self.rays = asked[0];
         let searched = [self.buffer("rays"), self.buffer("hits")];
-        for _ in 0..=shape.entries / grid::STEPS + 1 {
+        for _ in 0..room.rounds(shape) {
             let search = room.search(searched, self.rays, Query::Any, 1)?;
             let search: Vec<Step> = search.into_iter().map(Step::Pass).collect();
             self.run(&search)?;

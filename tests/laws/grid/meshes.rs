@@ -8,34 +8,13 @@ use triptych_spec::grid::{Blockers, Grid, Membership};
 
 use super::point;
 use crate::config;
+use crate::samples::sphere;
 
-/// A closed surface around 0: a sphere of so many meridians and parallels, stretched, its
-/// corners snapped.
-fn sphere() -> impl Strategy<Value = Blockers> {
+/// A closed surface around 0: a sphere of so many meridians and parallels, stretched.
+fn spheres() -> impl Strategy<Value = Blockers> {
     let radius = prop_oneof![16.0..200.0_f64, 1e3..4e6_f64];
     let size = [radius.clone(), radius.clone(), radius];
-    (3..9_u32, 3..9_u32, size).prop_map(|(around, down, size)| {
-        let at = |i: u32, j: u32| -> Point {
-            let (turn, tilt) = (
-                f64::from(i % around) / f64::from(around) * std::f64::consts::TAU,
-                f64::from(j) / f64::from(down) * std::f64::consts::PI,
-            );
-            let direction = [tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos()];
-            #[expect(clippy::cast_possible_truncation, reason = "at most 4e6")]
-            [0, 1, 2].map(|axis| (direction[axis] * size[axis]).round() as i32)
-        };
-        let row = |i: u32, j: u32| j * around + i % around;
-        let vertices = (0..=down).flat_map(|j| (0..around).map(move |i| at(i, j)));
-        let quads = (0..down).flat_map(|j| (0..around).map(move |i| (i, j)));
-        let halves = quads.flat_map(|(i, j)| {
-            let [a, b, c, d] = [row(i, j), row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)];
-            [[a, b, c], [a, c, d]]
-        });
-        Blockers {
-            vertices: vertices.collect(),
-            triangles: halves.collect(),
-        }
-    })
+    (3..9_u32, 3..9_u32, size).prop_map(|(around, down, size)| sphere(size, around, down))
 }
 
 /// A corner, a point of an edge, or anything.
@@ -56,7 +35,7 @@ proptest! {
 
     /// From the middle no direction leads out between triangles, and no way leads in.
     #[test]
-    fn closed((mesh, target) in sphere().prop_flat_map(|mesh| {
+    fn closed((mesh, target) in spheres().prop_flat_map(|mesh| {
         let target = target(&mesh);
         (Just(mesh), target)
     }), resolution in super::resolution()) {

@@ -128,7 +128,7 @@ fn a_wall_takes_a_half() {
 fn ball() -> (Blockers, Vec<Receiver>) {
     let (mut mesh, floor) = floor();
     let first = u32::try_from(mesh.vertices.len()).unwrap();
-    let ball = sphere(1_000_000.0, 24, 16);
+    let ball = sphere([1_000_000.0; 3], 24, 16);
     mesh.vertices.extend(
         ball.vertices
             .iter()

@@ -97,7 +97,7 @@ proptest! {
 /// What enters a closed mesh leaves it: every list is even, in any direction.
 #[test]
 fn closed_meshes_have_even_lists() {
-    let mesh = sphere(4e6, 17, 11);
+    let mesh = sphere([4e6; 3], 17, 11);
     let mut held = 0;
     for frame in 0..3 {
         let maps = maps_of(&mesh, 24, 40, frame);

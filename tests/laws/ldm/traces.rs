@@ -232,7 +232,7 @@ fn triangle() -> impl Strategy<Value = ([Point; 3], f64)> {
 /// From the middle of a closed mesh something is seen both ways, in all directions.
 #[test]
 fn a_closed_mesh_is_seen_from_inside() {
-    let mesh = sphere(4e6, 20, 12);
+    let mesh = sphere([4e6; 3], 20, 12);
     for frame in 0..3 {
         let maps = maps_of(&mesh, 64, 32, frame);
         let layers = build(&maps, &mesh).unwrap();
