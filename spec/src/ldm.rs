@@ -3,8 +3,8 @@
 //! Aalund, Frisvad and Bærentzen, "Interactive Global Illumination Effects Using
 //! Deterministically Directed Layered Depth Maps" (2015), sections 3.1 to 3.3 and 5.2. A map is
 //! an orthographic picture that keeps all depths of every pixel, front and back faces alike. One
-//! is made for each of N [`directions`], all of them a partition of half the sphere; [`build`]
-//! fills and sorts them, [`trace`] finds what is before and behind a point along a direction,
+//! is made for each of N [`directions`], all of them a partition of half the sphere; [`layers`]
+//! fills and sorts them, [`neighbours`] finds what is before and behind a point along a direction,
 //! [`occlusion`] and [`environment`] sum that up over the directions.
 //!
 //! **What decides is integers.** Blockers and points are on the lattice of the [`crate::grid`],
@@ -15,8 +15,9 @@
 //!
 //! | stage | gives | class |
 //! |---|---|---|
-//! | [`build`] | keys of every pixel, rising | exact |
-//! | [`trace`] | the keys before and behind a point's own | exact |
+//! | [`layers`] | keys of every pixel, rising | exact |
+//! | [`chain`] | the same as linked lists | exact, without addresses |
+//! | [`neighbours`] | the keys before and behind a point's own | exact |
 //! | [`occlusion`] | weight of what is open | exact; with a distance interval |
 //! | [`environment`] | irradiance | interval |
 //!
@@ -24,21 +25,23 @@
 //! is open and weighs as much as any other direction; a point's own layers are those within half
 //! a pixel's slope of its depth, not the nearest one, and there is no fixed step off the surface.
 
-mod build;
+mod chain;
 mod directions;
 mod environment;
+mod layers;
 mod map;
+mod neighbours;
 mod occlusion;
 mod rotation;
-mod trace;
 
-pub use build::{KEYS_MAX, Layers, build};
+pub use chain::{Chains, Link, chain};
 pub use directions::{DIRECTIONS_MAX, Zone, directions, zones};
 pub use environment::{Sky, environment};
+pub use layers::{KEYS_MAX, Layers, layers};
 pub use map::{KEYS_PER_STEP, Map, Maps, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN};
+pub use neighbours::{Hits, Receiver, neighbours, own_band};
 pub use occlusion::{Falloff, Open, WEIGHT_BITS, occlusion, openness, weight};
 pub use rotation::{Rotation, rotated};
-pub use trace::{Hits, Receiver, own_band, trace};
 
 use thiserror::Error;
 

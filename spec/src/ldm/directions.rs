@@ -111,7 +111,7 @@ fn gcd(a: u32, b: u32) -> u32 {
 
 /// `n` directions: the centres of the upper half of EQ(2, 2 n). The ring on the equator, which
 /// any n from 2 on has an even number of regions in if it has one, gives half of its centres:
-/// the others are their antipodes, and a map serves both ([`super::trace`]).
+/// the others are their antipodes, and a map serves both ([`super::neighbours`]).
 ///
 /// The number of regions of a pair of antipodal zones is the same for all n up to
 /// [`DIRECTIONS_MAX`], which a law shows.

@@ -1,7 +1,7 @@
 //! Stage `occlusion`: how much of the hemisphere over a point is open.
 
 use super::map::KEYS_PER_STEP;
-use super::trace::dot;
+use super::neighbours::dot;
 use super::{Hits, Map};
 use crate::bound::{Bounded, Real, Sum};
 use crate::grid::lattice::Point;

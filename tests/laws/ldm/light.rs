@@ -5,8 +5,8 @@ use triptych_spec::grid::resolution::Resolution;
 use triptych_spec::grid::trace::blocked;
 use triptych_spec::grid::{Blockers, Grid, Membership};
 use triptych_spec::ldm::{
-    Falloff, Hits, Layers, Map, Maps, Open, Receiver, Sky, build, environment, occlusion, openness,
-    trace, weight,
+    Falloff, Hits, Layers, Map, Maps, Open, Receiver, Sky, environment, layers, neighbours,
+    occlusion, openness, weight,
 };
 
 use super::directions::FURNACE;
@@ -14,7 +14,7 @@ use super::{empty, maps_of, normal_of, quad, sphere};
 
 /// What a receiver finds in all maps.
 fn found<'m>(maps: &'m Maps, layers: &Layers, receiver: &Receiver) -> Vec<(&'m Map, Hits)> {
-    let hit = |map: &'m Map| (map, trace(maps, map, layers, receiver));
+    let hit = |map: &'m Map| (map, neighbours(maps, map, layers, receiver));
     maps.maps.iter().map(hit).collect()
 }
 
@@ -46,7 +46,7 @@ fn a_floor_is_open() {
     for (count, table) in FURNACE {
         for frame in 0..3 {
             let maps = maps_of(&mesh, count, 24, frame);
-            let layers = build(&maps, &mesh).unwrap();
+            let layers = layers(&maps, &mesh).unwrap();
             let part = part(&maps, &layers, &receiver, Falloff::None);
             assert!((part - 1.0).abs() < table + 2e-5, "{count}: {part}");
         }
@@ -68,7 +68,7 @@ fn ceilings() {
     let height = 1_000_000;
     quad(&mut mesh, [-4_000_000; 2], [4_000_000; 2], height);
     let maps = maps_of(&mesh, 512, 300, 0);
-    let layers = build(&maps, &mesh).unwrap();
+    let layers = layers(&maps, &mesh).unwrap();
     let part_of = |falloff| part(&maps, &layers, &receiver, falloff);
     let taken = square(4e6, f64::from(height));
     assert!(
@@ -117,7 +117,7 @@ fn a_wall_takes_a_half() {
     };
     assert!(receiver.normal[2] > 0);
     let maps = maps_of(&mesh, 512, 724, 0);
-    let layers = build(&maps, &mesh).unwrap();
+    let layers = layers(&maps, &mesh).unwrap();
     let part = part(&maps, &layers, &receiver, Falloff::None);
     // It ends 20 times as high as it is far away: half of 1 - 1 / 20, nearly, is taken.
     let taken = (1.0 - 1.0 / 401.0_f64.sqrt()) / 2.0;
@@ -175,7 +175,7 @@ fn finer_maps_converge_to_rays() {
     let mut errors = Vec::new();
     for resolution in [25, 50, 100, 200, 400] {
         let maps = maps_of(&mesh, 64, resolution, 0);
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         let off = |receiver: &Receiver| {
             let rays = by_rays(&mesh, &grid, &maps, receiver);
             (part(&maps, &layers, receiver, Falloff::None) - rays).abs()
@@ -198,7 +198,7 @@ fn finer_maps_converge_to_rays() {
 fn skies() {
     let (mesh, receivers) = ball();
     let maps = maps_of(&mesh, 512, 60, 0);
-    let layers = build(&maps, &mesh).unwrap();
+    let layers = layers(&maps, &mesh).unwrap();
     let count = u32::try_from(maps.maps.len()).unwrap();
     let lit = |receiver: &Receiver, layers: &Layers, radiance: &dyn Fn([f64; 3]) -> [f32; 3]| {
         let skies: Vec<Sky> = maps
@@ -238,7 +238,7 @@ fn skies() {
 fn both_sides_see_everything_once() {
     let (mesh, receivers) = ball();
     let maps = maps_of(&mesh, 128, 40, 3);
-    let layers = build(&maps, &mesh).unwrap();
+    let layers = layers(&maps, &mesh).unwrap();
     for receiver in &receivers {
         let over = Receiver {
             normal: receiver.normal.map(|c| -c),
@@ -247,7 +247,7 @@ fn both_sides_see_everything_once() {
         for map in &maps.maps {
             assert_eq!(weight(map, receiver.normal), -weight(map, over.normal));
             // The same layers are its own.
-            let [a, b] = [receiver, &over].map(|r| trace(&maps, map, &layers, r));
+            let [a, b] = [receiver, &over].map(|r| neighbours(&maps, map, &layers, r));
             assert_eq!(a, b);
         }
         let under = part(&maps, &layers, &over, Falloff::None);

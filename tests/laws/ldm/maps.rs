@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use triptych_spec::grid::Blockers;
-use triptych_spec::ldm::{KEYS_PER_STEP, LdmError, Maps, RESOLUTION_MAX, build};
+use triptych_spec::ldm::{KEYS_PER_STEP, LdmError, Maps, RESOLUTION_MAX, layers};
 use triptych_spec::raster::{Setup, sample};
 use triptych_spec::vertex::Primitives;
 
@@ -65,7 +65,7 @@ proptest! {
         let triangles = rows.into_iter().map(|t| t.map(row)).collect();
         let mesh = Blockers { vertices, triangles };
         let maps = Maps::new(&directions, around(&mesh.vertices), resolution).unwrap();
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         prop_assert_eq!(layers.offsets.len(), maps.pixels as usize + 1);
         prop_assert_eq!(*layers.offsets.last().unwrap() as usize, layers.keys.len());
         for map in &maps.maps {
@@ -101,7 +101,7 @@ fn closed_meshes_have_even_lists() {
     let mut held = 0;
     for frame in 0..3 {
         let maps = maps_of(&mesh, 24, 40, frame);
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         held += layers.keys.len();
         for list in (0..maps.pixels).map(|pixel| layers.list(pixel)) {
             assert_eq!(list.len() % 2, 0, "{list:?}");
@@ -133,7 +133,7 @@ fn maps_are_cropped() {
         "{sizes:?}"
     );
     assert!(sizes[1].contains(&1), "{sizes:?}");
-    let layers = build(&maps, &mesh).unwrap();
+    let layers = layers(&maps, &mesh).unwrap();
     let above = maps.maps[0].size.width * maps.maps[0].size.height;
     let covered = layers.offsets[above as usize];
     assert!((70 * 70..=72 * 72).contains(&covered), "{covered}");
@@ -160,7 +160,7 @@ fn limits_are_named() {
         vertices: vec![[0; 3]],
         triangles: vec![[0, 0, 3]],
     };
-    assert_eq!(build(&maps, &mesh), Err(LdmError::Row(3)));
+    assert_eq!(layers(&maps, &mesh), Err(LdmError::Row(3)));
 }
 
 /// The corners of the lattice are held, at every resolution.

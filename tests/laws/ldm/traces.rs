@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::Point;
-use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Maps, Receiver, Rotation, build, trace};
+use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Maps, Receiver, Rotation, layers, neighbours};
 use triptych_spec::rsm::Face;
 
 use super::{around, direction, empty, maps_of, normal_of, point, quad, sphere};
@@ -27,14 +27,14 @@ fn layers_see_their_neighbours() {
     let mesh = stack();
     for (z, up) in [(1.0, 1), (-1.0, -1)] {
         let maps = Maps::new(&[[0.0, 0.0, z]], around(&mesh.vertices), 40).unwrap();
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         let at = |height: i32, normal: i32, off: u32| {
             let receiver = Receiver {
                 point: [123_456, -654_321, height],
                 normal: [0, 0, normal],
                 off,
             };
-            let hits = trace(&maps, &maps.maps[0], &layers, &receiver);
+            let hits = neighbours(&maps, &maps.maps[0], &layers, &receiver);
             let distance = |key: Option<u32>| Some((key?.cast_signed() - hits.key) / KEYS_PER_STEP);
             [distance(hits.before), distance(hits.behind)]
         };
@@ -73,7 +73,7 @@ fn what_is_within_half_a_pixels_slope_is_the_points_own() {
         quad(&mut two, [-4_000_000; 2], [4_000_000; 2], gap);
         let maps = Maps::new(&[[side, 0.0, side]], around(&two.vertices), 64).unwrap();
         assert!(f64::from(gap) < maps.pixel * 0.3 || f64::from(gap) > maps.pixel * 1.5);
-        let layers = build(&maps, &two).unwrap();
+        let layers = layers(&maps, &two).unwrap();
         let mut found = 0;
         for n in -100..100 {
             let receiver = Receiver {
@@ -81,7 +81,7 @@ fn what_is_within_half_a_pixels_slope_is_the_points_own() {
                 normal: normal_of(&two, 0),
                 off: 0,
             };
-            let hits = trace(&maps, &maps.maps[0], &layers, &receiver);
+            let hits = neighbours(&maps, &maps.maps[0], &layers, &receiver);
             assert_eq!(hits.behind, None, "{n}");
             found += u32::from(hits.before.is_some());
         }
@@ -98,7 +98,7 @@ fn what_is_within_half_a_pixels_slope_is_the_points_own() {
 fn beside_the_map_is_nothing() {
     let mesh = stack();
     let maps = Maps::new(&[[0.0, 0.0, 1.0]], around(&mesh.vertices), 40).unwrap();
-    let layers = build(&maps, &mesh).unwrap();
+    let layers = layers(&maps, &mesh).unwrap();
     let map = &maps.maps[0];
     let hits = |point| {
         let receiver = Receiver {
@@ -106,7 +106,7 @@ fn beside_the_map_is_nothing() {
             normal: [0; 3],
             off: 0,
         };
-        let Hits { before, behind, .. } = trace(&maps, map, &layers, &receiver);
+        let Hits { before, behind, .. } = neighbours(&maps, map, &layers, &receiver);
         [before.is_some(), behind.is_some()]
     };
     assert_eq!(hits([0, 0, 0]), [true; 2]);
@@ -148,12 +148,12 @@ proptest! {
         let mesh = Blockers { vertices, triangles };
         let maps = Maps::new(&[direction], around(&mesh.vertices), resolution).unwrap();
         let map = &maps.maps[0];
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         for (point, off, triangle, on) in asked {
             let triangle = u32::try_from(triangle.index(mesh.triangles.len())).unwrap();
             let normal = if on { Face::new(mesh.corners(triangle)).coarse } else { [0; 3] };
             let receiver = Receiver { point, normal, off };
-            let hits = trace(&maps, map, &layers, &receiver);
+            let hits = neighbours(&maps, map, &layers, &receiver);
             let [x, y, key] = maps.place(map, point);
             prop_assert_eq!(hits.key, key);
             let [w, h] = [map.size.width, map.size.height].map(u32::cast_signed);
@@ -190,7 +190,7 @@ proptest! {
         let face = Face::new(corners);
         let mesh = Blockers { vertices: corners.to_vec(), triangles: vec![[0, 1, 2]] };
         let maps = Maps::new(&[direction], around(&mesh.vertices), resolution).unwrap();
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         let map = &maps.maps[0];
         let facing: f64 = (0..3).map(|i| f64::from(face.unit[i]) * direction[i]).sum();
         // As seen, its height is several pixels: snapping to sub-pixels turns slivers around.
@@ -202,7 +202,7 @@ proptest! {
                 whole(o + a * (p - o) + b * (q - o))
             });
             let receiver = Receiver { point, normal: face.coarse, off: 1 };
-            let hits = trace(&maps, map, &layers, &receiver);
+            let hits = neighbours(&maps, map, &layers, &receiver);
             prop_assert_eq!([hits.before, hits.behind], [None; 2], "{:?}", receiver);
         }
     }
@@ -235,14 +235,14 @@ fn a_closed_mesh_is_seen_from_inside() {
     let mesh = sphere([4e6; 3], 20, 12);
     for frame in 0..3 {
         let maps = maps_of(&mesh, 64, 32, frame);
-        let layers = build(&maps, &mesh).unwrap();
+        let layers = layers(&maps, &mesh).unwrap();
         for map in &maps.maps {
             let receiver = Receiver {
                 point: [12_345, -54_321, 99_999],
                 normal: [0; 3],
                 off: 0,
             };
-            let hits = trace(&maps, map, &layers, &receiver);
+            let hits = neighbours(&maps, map, &layers, &receiver);
             assert!(hits.before.is_some() && hits.behind.is_some(), "{map:?}");
         }
     }

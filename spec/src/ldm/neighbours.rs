@@ -1,4 +1,4 @@
-//! Stage `trace`: what is before and behind a point along a direction.
+//! Stage `neighbours`: what is before and behind a point along a direction.
 
 use super::{Layers, Map, Maps};
 use crate::grid::lattice::Point;
@@ -27,14 +27,14 @@ pub struct Hits {
     pub behind: Option<u32>,
 }
 
-/// Stage `trace` (paper section 3.1 and Figure 4), in both directions at once: find the pixel,
+/// Stage `neighbours` (paper section 3.1 and Figure 4), in both directions at once: find the pixel,
 /// find the point's own layers, take the neighbours.
 ///
 /// Layers whose keys are within [`own_band`] of the point's are its own surface's. A point
 /// beside the map sees nothing, as there is nothing: the map covers the whole scene. The list
 /// that it finds is that of the pixel it is in, `[x, x + 1)` of each side, whatever the distance
 /// from the pixel's middle.
-pub fn trace(maps: &Maps, map: &Map, layers: &Layers, receiver: &Receiver) -> Hits {
+pub fn neighbours(maps: &Maps, map: &Map, layers: &Layers, receiver: &Receiver) -> Hits {
     let [x, y, key] = maps.place(map, receiver.point);
     let mut hits = Hits {
         key,
