@@ -7,9 +7,8 @@
 //#import counter
 //#import place
 //#import walk
+//#import relink
 
-// End of a list, and an empty list's head.
-const EOL: u32 = 0xffffffffu;
 // No opaque surface: farther than every key.
 const NOTHING: u32 = 0xffffffffu;
 
@@ -112,18 +111,6 @@ fn before(a: u32, b: u32) -> bool {
     return x.key < y.key || (x.key == y.key && x.prim < y.prim);
 }
 
-// Where a pixel's sort or resolve stands between two dispatches.
-struct Progress {
-    merged: u32,        // first node of what the pass has merged
-    tail: u32,          // its last node
-    left: u32,          // next node of the left run; of the list, in resolve
-    right: u32,         // next node of the right run
-    left_size: u32,     // nodes that the left run has left
-    right_size: u32,    // at most so many in the right run
-    run: u32,           // nodes in a run of this pass; 0: not begun
-    state: u32,
-}
-
 // Pixels that are not done yet ask for another dispatch.
 struct Work {
     unfinished: atomic<u32>,
@@ -132,16 +119,6 @@ struct Work {
 
 @group(0) @binding(11) var<storage, read_write> progress: Work;
 
-// A dispatch follows a list for so many steps, and the next one goes on. Drivers
-// end what takes too long: llvmpipe leaves every loop of an invocation after 65,535
-// iterations in all, GPUs reset after some seconds.
-const STEPS: u32 = 16384u;
-
-const FIND: u32 = 0u;       // looking for the end of the left run
-const MERGE: u32 = 1u;      // taking the smaller of two
-const DONE: u32 = 2u;
-const SEVERAL: u32 = 4u;    // flag: this pass has merged more than one pair
-
 // Stage sort: merges runs of 1, 2, 4, … nodes by relinking them, so that lists of
 // any length are sorted in place, in n log n steps. Lists of one are left alone.
 @compute @workgroup_size(WORKGROUP)
@@ -149,91 +126,13 @@ fn sort(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    var p = progress.pixels[id.x];
-    if p.run == 0u {
-        p = begin(atomicLoad(&heads[id.x]));
-    }
-    for (var i = 0u; i < STEPS && p.state != DONE; i += 1u) {
-        if (p.state & MERGE) == 0u {
-            find_step(&p);
-        } else {
-            merge_step(&p);
-        }
-    }
+    let p = relinked(progress.pixels[id.x], atomicLoad(&heads[id.x]));
     progress.pixels[id.x] = p;
     if p.state == DONE {
         atomicStore(&heads[id.x], p.merged);
     } else {
         atomicStore(&progress.unfinished, 1u);
     }
-}
-
-// The first pass over a list; done at once if there is nothing to sort.
-fn begin(head: u32) -> Progress {
-    var sorted = head == EOL;
-    if !sorted {
-        sorted = nodes[head].next == EOL;
-    }
-    if sorted {
-        return Progress(head, EOL, EOL, EOL, 0u, 0u, 1u, DONE);
-    }
-    return Progress(EOL, EOL, head, head, 0u, 0u, 1u, FIND);
-}
-
-// One step of `right` past the left run.
-fn find_step(p: ptr<function, Progress>) {
-    if (*p).left_size < (*p).run && (*p).right != EOL {
-        (*p).right = nodes[(*p).right].next;
-        (*p).left_size += 1u;
-    } else {
-        (*p).right_size = (*p).run;
-        (*p).state |= MERGE;
-    }
-}
-
-// Takes a node of the left or right run, or goes on to the next pair.
-fn merge_step(p: ptr<function, Progress>) {
-    let no_right = (*p).right_size == 0u || (*p).right == EOL;
-    if (*p).left_size == 0u && no_right {
-        next_pair(p);
-        return;
-    }
-    var take_right = (*p).left_size == 0u;
-    if !take_right && !no_right {
-        take_right = before((*p).right, (*p).left);
-    }
-    var taken = (*p).left;
-    if take_right {
-        taken = (*p).right;
-        (*p).right = nodes[taken].next;
-        (*p).right_size -= 1u;
-    } else {
-        (*p).left = nodes[taken].next;
-        (*p).left_size -= 1u;
-    }
-    if (*p).tail == EOL {
-        (*p).merged = taken;
-    } else {
-        nodes[(*p).tail].next = taken;
-    }
-    (*p).tail = taken;
-}
-
-// The next pair of runs; after the last, the next pass; after one pair in all, done.
-fn next_pair(p: ptr<function, Progress>) {
-    if (*p).right != EOL {
-        (*p).left = (*p).right;
-        (*p).left_size = 0u;
-        (*p).state = FIND | SEVERAL;
-        return;
-    }
-    nodes[(*p).tail].next = EOL;
-    if ((*p).state & SEVERAL) == 0u {
-        (*p).state = DONE;
-        return;
-    }
-    let head = (*p).merged;
-    *p = Progress(EOL, EOL, head, head, 0u, 0u, 2u * (*p).run, FIND);
 }
 
 // Stage resolve: the sorted list over what lies behind it, nearest first. Layers

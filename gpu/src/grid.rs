@@ -17,10 +17,10 @@ pub(crate) use room::Room;
 pub use stages::Stages;
 pub use timed::{Shape, Span, Timed};
 
-/// Cells of a workgroup in stage `scan`. Twin: `TILE` in `grid.wgsl`.
+/// Cells of a workgroup in stage `scan`. Twin: `TILE` in `scan.wgsl`.
 pub const TILE: u32 = 1024;
 
-/// Lists up to so long are sorted by one invocation each. Twin: `SHORT` in `grid.wgsl`.
+/// Lists up to so long are sorted by one invocation each. Twin: `SHORT` in `sort.wgsl`.
 pub const SHORT: u32 = 64;
 
 /// Boxes of up to so many cells are gone through by one invocation. Twin: `SMALL` in

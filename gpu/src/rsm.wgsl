@@ -4,6 +4,7 @@
 // Rays between `block_rays` and `block_bits` are searched by `trace` (grid.wgsl). Within a pass,
 // invocations meet in atomics only; sums have an order of their own, so pictures do not depend
 // on who comes first.
+//#import item
 //#import parameters
 //#import surface
 //#import view
@@ -11,8 +12,6 @@
 //#import lamp
 //#import coarse
 //#import asked
-
-const WORKGROUP: u32 = 64u;
 
 // Row in the model of the triangle that a pixel sees, by way of `sources`; or NOTHING.
 @group(0) @binding(2) var<storage, read> nearest: array<u32>;
@@ -46,11 +45,6 @@ const WORKGROUP: u32 = 64u;
 @group(0) @binding(19) var<storage, read_write> rays: array<Ray>;
 
 @group(0) @binding(20) var<storage, read_write> hits: array<Hit>;
-
-// The number of an invocation, of at most 65,535 workgroups a row.
-fn item(id: vec3<u32>, groups: vec3<u32>) -> u32 {
-    return id.x + id.y * groups.x * WORKGROUP;
-}
 
 fn nothing() -> Surface {
     return Surface(vec3(0.0), NOTHING);

@@ -1,15 +1,15 @@
-// Runs of one array.
+// Lists as runs of one array.
 
-// Where each cell's run starts; one more than cells.
+// Where each list's run starts; one more than lists.
 @group(0) @binding(6) var<storage, read_write> offsets: array<u32>;
 
-// Ids, a run for each cell.
-@group(0) @binding(7) var<storage, read_write> prims: array<u32>;
+// What is listed, a run for each list.
+@group(0) @binding(7) var<storage, read_write> listed: array<u32>;
 
-// The cell whose run an entry is in.
-fn cell_of(entry: u32) -> u32 {
+// The list whose run an entry is in, of so many.
+fn list_of(entry: u32, lists: u32) -> u32 {
     var low = 0u;
-    var high = cells.x * cells.y * cells.z;
+    var high = lists;
     while low < high {
         let middle = (low + high) / 2u;
         if offsets[middle] <= entry {
@@ -19,28 +19,4 @@ fn cell_of(entry: u32) -> u32 {
         }
     }
     return low - 1u;
-}
-
-// How many of a run in order are smaller.
-fn below(prim: u32, start: u32, end: u32) -> u32 {
-    var low = start;
-    var high = end;
-    while low < high {
-        let middle = (low + high) / 2u;
-        if prims[middle] < prim {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    return low - start;
-}
-
-// The same of a run in any order.
-fn rank(prim: u32, start: u32, end: u32) -> u32 {
-    var smaller = 0u;
-    for (var i = start; i < end; i += 1u) {
-        smaller += u32(prims[i] < prim);
-    }
-    return smaller;
 }

@@ -118,11 +118,11 @@ struct Looked {
 fn looked_through(ray: Ray, start: u32, end: u32) -> Looked {
     var looked = Looked(start, 0u, Meeting(MISSED, 0.0));
     // Read while the one before is looked at.
-    var ahead = prims[start];
+    var ahead = listed[start];
     while looked.at < end && looked.meeting.verdict == MISSED {
         looked.at += 1u;
         looked.prim = ahead;
-        ahead = prims[min(looked.at, end - 1u)];
+        ahead = listed[min(looked.at, end - 1u)];
         looked.meeting = glance(ray, looked.prim);
     }
     if looked.meeting.verdict == OPEN {

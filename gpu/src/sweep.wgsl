@@ -1,10 +1,9 @@
 // Through the cells of triangles' boxes: one invocation goes through a small box, a workgroup
 // through each chunk of a large one, in a later pass. So no invocation has much to do, however
 // large a triangle is among small ones.
+//#import item
 //#import cells
 //#import overlap
-
-const WORKGROUP: u32 = 64u;
 
 // Boxes of up to so many cells are small.
 const SMALL: u32 = 64u;

@@ -2,7 +2,7 @@
 // Twin: `Setup` in spec/src/raster.rs.
 
 //#import frame
-//#import wide
+//#import depth
 
 // Nine numbers a triangle: x, y in sub-pixels and the depth key of each corner.
 @group(0) @binding(1) var<storage, read> corners: array<i32>;
@@ -61,43 +61,13 @@ fn least(a: vec3<i32>, b: vec3<i32>) -> i32 {
     return select(1, 0, top_left);
 }
 
+// Depth keys of the corners.
+fn depths(s: Setup) -> vec3<u32> {
+    return vec3<u32>(vec3(s.a.z, s.b.z, s.c.z));
+}
+
 fn sample_at(pixel: u32) -> i32 {
     return i32(pixel << frame.bits) + i32(1u << (frame.bits - 1u));
-}
-
-// A depth key and what the division left over.
-struct Depth {
-    key: u32,
-    rest: Wide,
-}
-
-// floor(sum(E_i Z_i) / area) for E_i >= 0 with sum(E_i) = area.
-//
-// The numerator has up to 72 bits, but residuals are small, so 64 suffice. With
-// U = 2^-23: the numerator in f32 is off by at most 6 U (conversions 2 + 1,
-// product 1, sums 2), the area by 2 U, the quotient by 2.5 U, the product with
-// LOWER by 1 U: together under 2^-19.4, less than the 2^-19 that LOWER takes off.
-// An estimate is therefore never too large, and too small by at most
-// q (2^-19 + 2^-19.4) + 1: after the first, whose q is below 2^31, the residual is
-// under 2^13 areas (54 bits); after the second it is under 1.03; one subtraction
-// remains.
-const LOWER: f32 = 1.0 - 1.0 / 524288.0;
-
-fn depth_key(s: Setup, ea: Wide, eb: Wide, ec: Wide) -> Depth {
-    let za = u32(s.a.z);
-    let zb = u32(s.b.z);
-    let zc = u32(s.c.z);
-    let area = wide_to_f32(s.area);
-    let numerator = wide_to_f32(ea) * f32(za) + wide_to_f32(eb) * f32(zb) + wide_to_f32(ec) * f32(zc);
-    var rest = wide_add(wide_add(wide_scale(ea, za), wide_scale(eb, zb)), wide_scale(ec, zc));
-    let first = u32(numerator / area * LOWER);
-    rest = wide_sub(rest, wide_scale(s.area, first));
-    let second = u32(wide_to_f32(rest) / area * LOWER);
-    rest = wide_sub(rest, wide_scale(s.area, second));
-    if wide_less(rest, s.area) {
-        return Depth(first + second, rest);
-    }
-    return Depth(first + second + 1u, wide_sub(rest, s.area));
 }
 
 // The fragment of `prim` at a pixel that the hardware says is covered.
@@ -112,5 +82,5 @@ fn fragment_at(prim: u32, x: u32, y: u32) -> Fragment {
     if s.empty || wide_negative(ea) || wide_negative(eb) || wide_negative(ec) {
         return Fragment(pixel, prim, u32(s.a.z), 1u);
     }
-    return Fragment(pixel, prim, depth_key(s, ea, eb, ec).key, 1u);
+    return Fragment(pixel, prim, depth_key(depths(s), s.area, ea, eb, ec), 1u);
 }

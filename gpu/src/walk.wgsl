@@ -120,11 +120,12 @@ fn advance(walk: ptr<function, Walk>) -> bool {
             let s = (*walk).setup;
             (*walk).fragment.pixel = (*walk).pixel + x;
             (*walk).fragment.key = depth_key(
-                s,
+                depths(s),
+                s.area,
                 wide_add(ea, wide(least(s.b, s.c))),
                 wide_add(eb, wide(least(s.c, s.a))),
                 wide_add(ec, wide(least(s.a, s.b))),
-            ).key;
+            );
             return true;
         }
     }

@@ -43,7 +43,7 @@ impl<'g> Room<'g> {
             ("counts", room("counts of cells", total, 4)?),
             ("offsets", room("offsets of cells", total + 1, 4)?),
             ("sums", room("sums of tiles", total.div_ceil(TILE), 4)?),
-            ("prims", room("entries of cells", shape.entries, 4)?),
+            ("listed", room("entries of cells", shape.entries, 4)?),
             ("merged", room("entries of cells", shape.entries, 4)?),
             ("bricks", room("bricks", device.bricks(), 8)?),
         ];
@@ -166,8 +166,8 @@ fn build(
 fn swap(named: &mut [(&str, &wgpu::Buffer)]) {
     for (name, _) in named {
         *name = match *name {
-            "prims" => "merged",
-            "merged" => "prims",
+            "listed" => "merged",
+            "merged" => "listed",
             other => other,
         };
     }

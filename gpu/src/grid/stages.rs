@@ -105,7 +105,7 @@ impl<'g> Stages<'g> {
         let buffers = [
             ("counts", &self.counts),
             ("offsets", &self.offsets),
-            ("prims", &self.prims),
+            ("listed", &self.prims),
         ];
         let kernels = ["fill", "fill_chunks"];
         (self.time, self.chunks) = self.device.sweep(kernels, capacity, &buffers)?;
@@ -122,7 +122,7 @@ impl<'g> Stages<'g> {
             run,
             ..self.device.cells
         };
-        let buffers = [("offsets", &self.offsets), ("prims", &self.prims)];
+        let buffers = [("offsets", &self.offsets), ("listed", &self.prims)];
         let total = self.device.total();
         self.time += self.device.each("fill_sort", runs(total, 0), &buffers)?;
         // No list is longer than all are together, whatever damaged offsets say.
@@ -135,7 +135,7 @@ impl<'g> Stages<'g> {
         for (kernel, run) in long_passes(longest) {
             let buffers = [
                 ("offsets", &self.offsets),
-                ("prims", &self.prims),
+                ("listed", &self.prims),
                 ("merged", &merged),
             ];
             self.time += self.device.each(kernel, runs(entries, run), &buffers)?;
@@ -217,7 +217,7 @@ impl<'g> Stages<'g> {
     ) -> Result<Duration, GpuError> {
         let buffers = [
             ("offsets", &self.offsets),
-            ("prims", &self.prims),
+            ("listed", &self.prims),
             ("bricks", &self.bricks),
             ("rays", rays),
             ("hits", hits),

@@ -144,7 +144,7 @@ impl<'g> Timed<'g> {
     /// Whatever the device reports.
     pub fn prims(&self) -> Result<Vec<u32>, GpuError> {
         let named = self.room.sorted();
-        let prims = named.iter().find(|(name, _)| *name == "prims");
+        let prims = named.iter().find(|(name, _)| *name == "listed");
         let (_, prims) = prims.expect("made with the room");
         self.gpu.read(prims, self.entries as usize)
     }
