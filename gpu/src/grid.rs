@@ -17,11 +17,8 @@ pub(crate) use room::Room;
 pub use stages::Stages;
 pub use timed::{Shape, Span, Timed};
 
-/// Cells of a workgroup in stage `scan`. Twin: `TILE` in `scan.wgsl`.
-pub const TILE: u32 = 1024;
-
-/// Lists up to so long are sorted by one invocation each. Twin: `SHORT` in `sort.wgsl`.
-pub const SHORT: u32 = 64;
+/// Kernels that put long lists in order.
+const LONG: [&str; 2] = ["fill_runs", "fill_merge"];
 
 /// Boxes of up to so many cells are gone through by one invocation. Twin: `SMALL` in
 /// `sweep.wgsl`.

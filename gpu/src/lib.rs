@@ -13,6 +13,8 @@ pub mod error;
 pub mod frame;
 pub mod grid;
 pub mod kernel;
+pub mod ldm;
+pub mod lists;
 pub mod pass;
 pub mod raster;
 pub mod rsm;

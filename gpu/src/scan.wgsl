@@ -51,7 +51,7 @@ fn counted(first: u32, items: u32) -> u32 {
 fn sum_tile(tile: u32, lane: u32, items: u32) {
     let own = counted(tile * TILE + lane * SCANNED, items);
     let before = parts_before(lane, own);
-    if lane == WORKGROUP - 1u {
+    if lane == WORKGROUP - 1u && tile * TILE < items {
         sums[tile] = plus(before, own);
     }
 }

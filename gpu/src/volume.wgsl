@@ -52,13 +52,13 @@ fn exact_volume(x: vec3<i32>, y: vec3<i32>, z: vec3<i32>) -> Volume {
     let a = wide_sub(wide_mul(y.y, z.z), wide_mul(y.z, z.y));
     let b = wide_sub(wide_mul(y.z, z.x), wide_mul(y.x, z.z));
     let c = wide_sub(wide_mul(y.x, z.y), wide_mul(y.y, z.x));
-    var high = wide_mul(x.x, wide_floor24(a));
-    high = wide_add(high, wide_mul(x.y, wide_floor24(b)));
-    high = wide_add(high, wide_mul(x.z, wide_floor24(c)));
+    var high = wide_mul(x.x, wide_floor(a, 24u));
+    high = wide_add(high, wide_mul(x.y, wide_floor(b, 24u)));
+    high = wide_add(high, wide_mul(x.z, wide_floor(c, 24u)));
     var low = wide_mul(x.x, wide_low24(a));
     low = wide_add(low, wide_mul(x.y, wide_low24(b)));
     low = wide_add(low, wide_mul(x.z, wide_low24(c)));
-    high = wide_add(high, wide(wide_floor24(low)));
+    high = wide_add(high, wide(wide_floor(low, 24u)));
     let rest = wide_low24(low);
     if !wide_negative(high) {
         let value = wide_to_f32(high) * 16777216.0 + f32(rest);

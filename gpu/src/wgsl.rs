@@ -1,6 +1,8 @@
 //! A small linker for WGSL: `//#import name` is replaced, once, by the file of
 //! that name, and every line of the result remembers where it came from.
 
+mod shipped;
+
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,64 +53,7 @@ pub struct Program {
     pub info: ModuleInfo,
 }
 
-macro_rules! shipped {
-    ($($name:literal),* $(,)?) => {
-        BTreeMap::from([$((
-            Cow::Borrowed($name),
-            Cow::Borrowed(include_str!(concat!($name, ".wgsl")))
-        )),*])
-    };
-}
-
 impl Sources {
-    /// The files as they ship. `native` takes 64-bit integers from the adapter
-    /// (`SHADER_INT64`) in place of pairs of words.
-    pub fn shipped(native: bool) -> Self {
-        let mut files = shipped!(
-            "abuffer",
-            "asked",
-            "bricks",
-            "ceiling",
-            "cells",
-            "coarse",
-            "counter",
-            "depth",
-            "frame",
-            "grid",
-            "item",
-            "lamp",
-            "march",
-            "meet",
-            "nearest",
-            "overlap",
-            "parameters",
-            "place",
-            "raster",
-            "ray",
-            "relink",
-            "rsm",
-            "runs",
-            "scan",
-            "search",
-            "sort",
-            "surface",
-            "sweep",
-            "texel",
-            "triangle",
-            "vertex",
-            "view",
-            "volume",
-            "walk",
-            "wide",
-            "wide_native",
-        );
-        let native_wide = files.remove("wide_native");
-        if let (true, Some(text)) = (native, native_wide) {
-            files.insert("wide".into(), text);
-        }
-        Self(files)
-    }
-
     /// A copy with one defect: `find`, which must occur exactly once in `file`,
     /// replaced.
     ///

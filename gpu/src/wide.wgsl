@@ -63,9 +63,12 @@ fn wide_shift(a: Wide, bits: u32) -> Wide {
     return vec2(a.x << bits, (a.y << bits) | (a.x >> (32u - bits)));
 }
 
-// floor(a / 2^24), for a below 2^55 in size.
-fn wide_floor24(a: Wide) -> i32 {
-    return bitcast<i32>((a.y << 8u) | (a.x >> 24u));
+// floor(a / 2^bits), for bits in 1..63 and a result of 32 bits.
+fn wide_floor(a: Wide, bits: u32) -> i32 {
+    if bits < 32u {
+        return bitcast<i32>((a.y << (32u - bits)) | (a.x >> bits));
+    }
+    return bitcast<i32>(a.y) >> (bits - 32u);
 }
 
 // a modulo 2^24.

@@ -46,9 +46,9 @@ fn wide_shift(a: Wide, bits: u32) -> Wide {
     return a << bits;
 }
 
-// floor(a / 2^24), for a below 2^55 in size.
-fn wide_floor24(a: Wide) -> i32 {
-    return i32(a >> 24u);
+// floor(a / 2^bits), for bits in 1..63 and a result of 32 bits.
+fn wide_floor(a: Wide, bits: u32) -> i32 {
+    return i32(a >> bits);
 }
 
 // a modulo 2^24.

@@ -1,5 +1,7 @@
 //! Layered depth maps: directions, maps, what is seen through them.
 
+#[path = "ldm/adapters.rs"]
+mod adapters;
 #[path = "ldm/directions.rs"]
 mod directions;
 #[path = "ldm/light.rs"]

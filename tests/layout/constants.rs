@@ -3,11 +3,14 @@
 use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
-use triptych_gpu::grid::{CHUNK, FRESH, SHORT, SMALL, TILE, TRACED};
+use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
+use triptych_gpu::ldm::FEW;
+use triptych_gpu::lists::{SHORT, TILE};
 use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
+use triptych_spec::ldm::{PLANE_BITS, WEIGHT_BITS};
 use triptych_spec::rsm::{COARSE_BITS, PLACE_MAX};
 use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
 
@@ -45,6 +48,9 @@ fn constants_are_those_of_rust() {
         ("TRACED", i64::from(TRACED)),
         ("PLACE_MAX", i64::from(PLACE_MAX)),
         ("COARSE_BITS", i64::from(COARSE_BITS)),
+        ("FEW", i64::from(FEW)),
+        ("PLANE_BITS", i64::from(PLANE_BITS)),
+        ("WEIGHT_BITS", i64::from(WEIGHT_BITS)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

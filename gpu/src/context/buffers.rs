@@ -84,19 +84,41 @@ impl Gpu {
         let mut items = Vec::with_capacity(count);
         for first in (0..count).step_by(at_once) {
             let part = at_once.min(count - first);
-            let bytes = (part * size_of::<T>()) as u64;
-            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-            let staging = self.buffer("staging", bytes, usage, false)?;
-            let mut encoder = self.encoder();
             let from = (first * size_of::<T>()) as u64;
-            encoder.copy_buffer_to_buffer(buffer, from, &staging, 0, bytes);
-            self.queue.submit([encoder.finish()]);
-            staging.map_async(wgpu::MapMode::Read, .., |_| {});
-            self.wait()?;
-            let view = staging.get_mapped_range(..).map_err(|e| self.refused(&e))?;
-            items.extend(bytemuck::pod_collect_to_vec::<u8, T>(&view));
+            self.read_part(buffer, from, part, &mut items)?;
         }
         Ok(items)
+    }
+
+    /// So many items from a byte on, no more than pass at once.
+    fn read_part<T: bytemuck::Pod>(
+        &self,
+        buffer: &wgpu::Buffer,
+        from: u64,
+        count: usize,
+        items: &mut Vec<T>,
+    ) -> Result<(), GpuError> {
+        let bytes = (count * size_of::<T>()) as u64;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let staging = self.buffer("staging", bytes, usage, false)?;
+        let mut encoder = self.encoder();
+        encoder.copy_buffer_to_buffer(buffer, from, &staging, 0, bytes);
+        self.queue.submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, .., |_| {});
+        self.wait()?;
+        let view = staging.get_mapped_range(..).map_err(|e| self.refused(&e))?;
+        items.extend(bytemuck::pod_collect_to_vec::<u8, T>(&view));
+        Ok(())
+    }
+
+    /// One word of a buffer.
+    ///
+    /// # Errors
+    /// As [`Gpu::read`].
+    pub fn word(&self, buffer: &wgpu::Buffer, at: u32) -> Result<u32, GpuError> {
+        let mut word = Vec::with_capacity(1);
+        self.read_part(buffer, 4 * u64::from(at), 1, &mut word)?;
+        Ok(word[0])
     }
 
     /// The first word of a buffer, which is 0 afterwards.

@@ -7,8 +7,9 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 
 use super::device::Device;
-use super::{Cells, Entry, FRESH, Hit, Linked, Packed, SHORT, TILE, TRACED};
+use super::{Cells, Entry, FRESH, Hit, LONG, Linked, Packed, TRACED};
 use crate::error::GpuError;
+use crate::lists::{SHORT, TILE, long_passes};
 
 /// Rays of one dispatch: 32 bytes each, within 128 MiB.
 const RAYS: usize = 1 << 22;
@@ -132,7 +133,7 @@ impl<'g> Stages<'g> {
         }
         let size = 4 * u64::from(entries);
         let mut merged = self.device.gpu.storage("entries of cells", size)?;
-        for (kernel, run) in long_passes(longest) {
+        for (kernel, run) in long_passes(LONG, longest) {
             let buffers = [
                 ("offsets", &self.offsets),
                 ("listed", &self.prims),
@@ -245,15 +246,6 @@ impl<'g> Stages<'g> {
             stage: "trace",
         }
     }
-}
-
-/// Kernels that put lists longer than [`SHORT`] in order, and the runs that each starts from.
-pub(super) fn long_passes(longest: u32) -> impl Iterator<Item = (&'static str, u32)> {
-    let merges = std::iter::successors(Some(SHORT), |run| run.checked_mul(2));
-    let merges = merges.take_while(move |run| *run < longest);
-    let runs = (longest > SHORT).then_some(("fill_runs", 0));
-    runs.into_iter()
-        .chain(merges.map(|run| ("fill_merge", run)))
 }
 
 /// A ray that has not started.

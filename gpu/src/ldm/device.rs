@@ -1,0 +1,149 @@
+//! What all stages share, and dispatches.
+
+use std::time::Duration;
+
+use triptych_spec::grid::Blockers;
+use triptych_spec::ldm::Maps;
+
+use super::batch::Span;
+use super::{Packed, Told};
+use crate::context::Gpu;
+use crate::dispatch::Ready;
+use crate::error::GpuError;
+use crate::frame::WORKGROUP;
+use crate::kernel::Kernels;
+use crate::lists::TILE;
+
+pub(super) type Buffers<'b> = [(&'b str, &'b wgpu::Buffer)];
+
+/// Maps and triangles on the device.
+pub(super) struct Device<'g> {
+    pub(super) gpu: &'g Gpu,
+    kernels: &'g Kernels,
+    pub(super) all: &'g Maps,
+    /// What kernels are told, but for what a dispatch adds.
+    pub(super) told: Told,
+    maps: wgpu::Buffer,
+    corners: wgpu::Buffer,
+    pub(super) unfinished: wgpu::Buffer,
+    /// Bytes of a buffer of lists, at most.
+    pub(super) room: u64,
+}
+
+impl<'g> Device<'g> {
+    /// Uploads maps and triangles. No buffer of lists takes more than `budget` bytes.
+    pub(super) fn new(
+        gpu: &'g Gpu,
+        kernels: &'g Kernels,
+        all: &'g Maps,
+        blockers: &Blockers,
+        budget: u64,
+    ) -> Result<Self, GpuError> {
+        let count = blockers.triangles.len();
+        let triangles = u32::try_from(count).map_err(|_| GpuError::Limit {
+            adapter: gpu.name.clone(),
+            what: "triangles",
+            needed: count as u64,
+            limit: u32::MAX.into(),
+        })?;
+        let corners = (0..triangles).flat_map(|prim| blockers.corners(prim));
+        let corners: Vec<[i32; 4]> = corners.map(|[x, y, z]| [x, y, z, 0]).collect();
+        let maps: Vec<Packed> = all.maps.iter().map(Packed::from).collect();
+        Ok(Self {
+            told: Told {
+                bits: all.bits,
+                shift: all.shifts[0],
+                half: all.half,
+                half_shift: all.half_shift,
+                triangles,
+                ..Told::default()
+            },
+            maps: gpu.upload("maps", &maps)?,
+            corners: gpu.upload("corners of triangles", &corners)?,
+            unfinished: gpu.storage("unfinished", 4)?,
+            room: gpu.binding_limit().min(budget),
+            gpu,
+            kernels,
+            all,
+        })
+    }
+
+    /// Bytes of maps and triangles.
+    pub(super) fn bytes(&self) -> u64 {
+        self.maps.size() + self.corners.size()
+    }
+
+    /// So many workgroups, to be recorded.
+    pub(super) fn groups(
+        &self,
+        entry: &str,
+        told: Told,
+        groups: u32,
+        buffers: &Buffers<'_>,
+    ) -> Result<Ready, GpuError> {
+        let uniform = self.gpu.uniform("told", &told)?;
+        let mut all = vec![
+            ("told", &uniform),
+            ("maps", &self.maps),
+            ("corners", &self.corners),
+            ("unfinished", &self.unfinished),
+        ];
+        all.extend_from_slice(buffers);
+        Ready::new(self.gpu, self.kernels, ("ldm", entry), groups, &all)
+    }
+
+    /// One invocation for each item, to be recorded.
+    pub(super) fn each(
+        &self,
+        entry: &str,
+        told: Told,
+        buffers: &Buffers<'_>,
+    ) -> Result<Ready, GpuError> {
+        self.groups(entry, told, told.items.div_ceil(WORKGROUP), buffers)
+    }
+
+    /// Passes that draw all triangles into all maps of a batch.
+    ///
+    /// # Errors
+    /// More workgroups than a dispatch has, and what the device refuses.
+    pub(super) fn draw(
+        &self,
+        entry: &str,
+        (span, capacity): (&Span, u32),
+        buffers: &Buffers<'_>,
+    ) -> Result<Vec<Ready>, GpuError> {
+        let chunks = u64::from(self.told.triangles.div_ceil(WORKGROUP));
+        let groups = chunks * u64::from(span.maps.end - span.maps.start);
+        let groups = u32::try_from(groups).map_err(|_| GpuError::Limit {
+            adapter: self.gpu.name.clone(),
+            what: "workgroups that draw triangles into maps",
+            needed: groups,
+            limit: u32::MAX.into(),
+        })?;
+        let told = Told {
+            capacity,
+            ..self.told
+        };
+        let passes = span.drawn(told);
+        passes
+            .map(|told| self.groups(entry, told, groups, buffers))
+            .collect()
+    }
+
+    /// Passes that put the end of each run in place of its count.
+    pub(super) fn scan(&self, span: &Span, buffers: &Buffers<'_>) -> Result<Vec<Ready>, GpuError> {
+        let (told, tiles) = (span.told(self.told), span.len().div_ceil(TILE));
+        let passes = [
+            ("layers_tiles", tiles),
+            ("layers_sums", 1),
+            ("layers_ends", tiles),
+        ];
+        let pass = |(entry, groups)| self.groups(entry, told, groups, buffers);
+        passes.into_iter().map(pass).collect()
+    }
+
+    /// Runs passes one after another, and waits for the end of each.
+    pub(super) fn run(&self, passes: &[Ready]) -> Result<Duration, GpuError> {
+        passes.iter().map(|pass| pass.run(self.gpu)).sum()
+    }
+}

@@ -1,0 +1,154 @@
+//! Stages that ask the lists: neighbours, occlusion, environment.
+
+use std::time::Duration;
+
+use triptych_spec::ldm::{Falloff, Hits, KEYS_PER_STEP, Receiver, Sky, WEIGHT_BITS};
+
+use super::lists::Batch;
+use super::stages::Stages;
+use super::{Open, Told};
+use crate::error::GpuError;
+
+/// Maps that an invocation asks in a dispatch. Each costs one iteration and, with 2^28 keys in a
+/// list, 2 x 29 more; llvmpipe leaves every loop after 65,535.
+pub(super) const ASKED: u32 = 1024;
+
+impl Stages<'_> {
+    /// Stage `neighbours`: map by map, those of every receiver.
+    pub fn neighbours(&mut self, receivers: &[Receiver]) -> Result<Vec<Hits>, GpuError> {
+        let gpu = self.device.gpu;
+        let own = self.upload(receivers)?;
+        let items = count(receivers);
+        let bytes = 12 * u64::from(items.max(1));
+        gpu.check_binding("hits of receivers", bytes)?;
+        let at_once = self.device.room.min(gpu.binding_limit()) / bytes;
+        let at_once = u32::try_from(at_once.max(1)).unwrap_or(u32::MAX);
+        let mut found = Vec::with_capacity(receivers.len() * self.device.all.maps.len());
+        let mut time = Duration::ZERO;
+        for batch in &self.batches {
+            for told in asking(batch, self.device.told, items, at_once) {
+                let hits = gpu.storage("hits of receivers", bytes * u64::from(told.maps))?;
+                let named = [("receivers", &own), ("hits", &hits)];
+                let named = [&named[..], &lists(batch)].concat();
+                let groups = (told.maps * items).div_ceil(crate::frame::WORKGROUP);
+                let pass = self.device.groups("neighbours", told, groups, &named)?;
+                time += self.device.run(&[pass])?;
+                let hits: Vec<super::Hits> = gpu.read(&hits, (told.maps * items) as usize)?;
+                found.extend(hits.into_iter().map(Hits::from));
+            }
+        }
+        self.time = time;
+        Ok(found)
+    }
+
+    /// Stage `occlusion`, of all maps.
+    pub fn occlusion(
+        &mut self,
+        receivers: &[Receiver],
+        falloff: Falloff,
+    ) -> Result<Vec<Open>, GpuError> {
+        let own = self.upload(receivers)?;
+        let sums = vec![Open::default(); receivers.len()];
+        let sums = self.device.gpu.upload("what is open", &sums)?;
+        self.time = Duration::ZERO;
+        let told = fading(self.device.told, falloff);
+        self.ask(
+            "occlusion",
+            told,
+            count(receivers),
+            &[("receivers", &own), ("opened", &sums)],
+        )?;
+        self.device.gpu.read(&sums, receivers.len())
+    }
+
+    /// Stage `environment`, of all maps; a sky for each. Radiance that an `f32` holds.
+    pub fn environment(
+        &mut self,
+        receivers: &[Receiver],
+        skies: &[Sky],
+    ) -> Result<Vec<[f32; 3]>, GpuError> {
+        let gpu = self.device.gpu;
+        let own = self.upload(receivers)?;
+        let skies: Vec<[[f32; 4]; 2]> = skies.iter().map(padded).collect();
+        let skies = gpu.upload("skies of maps", &skies)?;
+        let light = gpu.upload("light", &vec![[0.0_f32; 4]; receivers.len()])?;
+        self.time = Duration::ZERO;
+        let named = [("receivers", &own), ("skies", &skies), ("light", &light)];
+        self.ask("environment", self.device.told, count(receivers), &named)?;
+        let light: Vec<[f32; 4]> = gpu.read(&light, receivers.len())?;
+        // Kernels sum up; what is common to all terms comes last, in f32 like the rest.
+        let scale = 2.0 / self.device.all.maps.len() as f32 / (1_u32 << WEIGHT_BITS) as f32;
+        let scaled = |[r, g, b, _]: [f32; 4]| [r * scale, g * scale, b * scale];
+        Ok(light.into_iter().map(scaled).collect())
+    }
+
+    fn upload(&self, receivers: &[Receiver]) -> Result<wgpu::Buffer, GpuError> {
+        let packed: Vec<_> = receivers.iter().map(super::Receiver::from).collect();
+        self.device.gpu.upload("receivers", &packed)
+    }
+
+    /// One invocation for each receiver, and so many maps at a time.
+    fn ask(
+        &mut self,
+        entry: &str,
+        told: Told,
+        items: u32,
+        named: &[(&str, &wgpu::Buffer)],
+    ) -> Result<(), GpuError> {
+        for batch in &self.batches {
+            let named = [named, &lists(batch)].concat();
+            for told in asking(batch, told, items, ASKED) {
+                let pass = self.device.each(entry, told, &named)?;
+                self.time += self.device.run(&[pass])?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A batch's lists by the names that kernels have for them.
+pub(super) fn lists(batch: &Batch) -> [(&'static str, &wgpu::Buffer); 2] {
+    [("offsets", &batch.offsets), ("listed", &batch.keys)]
+}
+
+/// Dispatches over the maps of a batch, so many at a time.
+pub(super) fn asking(
+    batch: &Batch,
+    told: Told,
+    items: u32,
+    at_once: u32,
+) -> impl Iterator<Item = Told> {
+    let told = batch.span.told(told);
+    let numbers = batch.span.maps.clone();
+    let firsts = numbers.clone().step_by(at_once as usize);
+    firsts.map(move |first_map| Told {
+        first_map,
+        maps: at_once.min(numbers.end - first_map),
+        items,
+        ..told
+    })
+}
+
+/// What a distance does, in keys.
+pub(super) fn fading(told: Told, falloff: Falloff) -> Told {
+    let (most, power) = match falloff {
+        Falloff::None => (0, 0),
+        // No two keys are farther apart than 2^28.
+        Falloff::Distance { most, power } => {
+            (most.saturating_mul(KEYS_PER_STEP.unsigned_abs()), power)
+        }
+    };
+    Told {
+        most,
+        power,
+        ..told
+    }
+}
+
+fn count(receivers: &[Receiver]) -> u32 {
+    u32::try_from(receivers.len()).expect("fewer than 2^32")
+}
+
+fn padded(sky: &Sky) -> [[f32; 4]; 2] {
+    sky.map(|[r, g, b]| [r, g, b, 0.0])
+}

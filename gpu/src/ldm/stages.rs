@@ -1,0 +1,142 @@
+//! What the host does for each stage.
+
+use std::time::Duration;
+
+use triptych_spec::abuffer::EOL;
+use triptych_spec::grid::Blockers;
+use triptych_spec::ldm::{Layers, Maps};
+
+use super::batch::spans;
+use super::device::Device;
+use super::lists::Batch;
+use super::{Chains, Link, Told};
+use crate::abuffer::PROGRESS;
+use crate::context::Gpu;
+use crate::error::GpuError;
+use crate::kernel::Kernels;
+
+/// Maps in the making. Stages are called in order; each takes what was given in its place, or
+/// what the one before made.
+pub struct Stages<'g> {
+    pub(super) device: Device<'g>,
+    pub(super) batches: Vec<Batch>,
+    /// Time on the device of what ran last, without transfers.
+    pub time: Duration,
+}
+
+impl<'g> Stages<'g> {
+    /// Uploads maps and triangles. No buffer takes more than `budget` bytes: maps are then made in
+    /// several batches. They are, too, where the adapter binds no more.
+    ///
+    /// # Errors
+    /// Limits by name, and whatever the device reports; so for all stages.
+    pub fn new(
+        gpu: &'g Gpu,
+        kernels: &'g Kernels,
+        maps: &'g Maps,
+        blockers: &Blockers,
+        budget: u64,
+    ) -> Result<Self, GpuError> {
+        Ok(Self {
+            device: Device::new(gpu, kernels, maps, blockers, budget)?,
+            batches: Vec::new(),
+            time: Duration::ZERO,
+        })
+    }
+
+    /// In how many batches the lists are.
+    pub fn batches(&self) -> usize {
+        self.batches.len()
+    }
+
+    /// Stage `layers`.
+    pub fn layers(&mut self) -> Result<Layers, GpuError> {
+        self.batches.clear();
+        self.time = Duration::ZERO;
+        for span in self.device.spans() {
+            let (batches, time) = self.device.build(span)?;
+            self.batches.extend(batches);
+            self.time += time;
+        }
+        self.device.read(&self.batches)
+    }
+
+    /// Puts lists in place of the device's own.
+    ///
+    /// # Panics
+    /// If they are not of these maps.
+    pub fn give_layers(&mut self, layers: &Layers) -> Result<(), GpuError> {
+        let maps = self.device.all;
+        assert_eq!(layers.offsets.len(), maps.pixels as usize + 1, "other maps");
+        self.batches.clear();
+        for span in self.device.batches_of(layers) {
+            let own = &layers.offsets[span.pixels.start as usize..=span.pixels.end as usize];
+            let [first, end] = [own[0], own[own.len() - 1]];
+            let offsets: Vec<u32> = own.iter().map(|at| at - first).collect();
+            let keys = &layers.keys[first as usize..end as usize];
+            self.batches.push(Batch {
+                offsets: self.device.gpu.upload("offsets of pixels", &offsets)?,
+                keys: self.device.gpu.upload("keys of pixels", keys)?,
+                total: end - first,
+                longest: 0,
+                span,
+            });
+        }
+        Ok(())
+    }
+
+    /// Stage `chain`: the paper's lists, in order. Of all keys `capacity` have room.
+    pub fn chain(&mut self, capacity: u32) -> Result<Chains, GpuError> {
+        self.time = Duration::ZERO;
+        let mut chains = Chains::default();
+        for span in spans(self.device.all, self.device.room / PROGRESS) {
+            let gpu = self.device.gpu;
+            // As if all batches had one pool: what attempts have used up is gone.
+            let base = u64::from(capacity).min(chains.attempts);
+            let left = capacity - u32::try_from(base).expect("at most the capacity");
+            let heads = gpu.filled("heads", span.len(), EOL)?;
+            let nodes = gpu.storage("entries of lists", 8 * u64::from(left))?;
+            let counter = gpu.storage("counter", 4)?;
+            let buffers = [("heads", &heads), ("nodes", &nodes), ("counter", &counter)];
+            let drawn = self.device.draw("chain", (&span, left), &buffers)?;
+            self.time += self.device.run(&drawn)?;
+            self.relink(span.told(self.device.told), [&heads, &nodes])?;
+            let attempts = self.device.gpu.word(&counter, 0)?;
+            let own: Vec<u32> = gpu.read(&heads, span.len() as usize)?;
+            let links: Vec<Link> = gpu.read(&nodes, attempts.min(left) as usize)?;
+            let base = u32::try_from(base).expect("at most the capacity");
+            let moved = |at: u32| match at {
+                EOL => EOL,
+                _ => at.wrapping_add(base),
+            };
+            chains.heads.extend(own.into_iter().map(moved));
+            chains.links.extend(links.into_iter().map(|link| Link {
+                next: moved(link.next),
+                ..link
+            }));
+            chains.attempts += u64::from(attempts);
+        }
+        Ok(chains)
+    }
+
+    /// Puts all lists of a batch in order.
+    fn relink(&mut self, told: Told, [heads, nodes]: [&wgpu::Buffer; 2]) -> Result<(), GpuError> {
+        let gpu = self.device.gpu;
+        let progress = gpu.storage("progress of pixels", PROGRESS * u64::from(told.pixels))?;
+        let buffers = [("heads", heads), ("nodes", nodes), ("progress", &progress)];
+        // A list of n is sorted in at most n (log n + 3) steps, and looked at twice in each run.
+        let keys = nodes.size() / 8;
+        let steps = 4 * keys * (u64::from(keys.max(2).ilog2()) + 3);
+        for _ in 0..=steps / u64::from(crate::grid::STEPS) {
+            let pass = self.device.each("chain_sort", told, &buffers)?;
+            self.time += self.device.run(&[pass])?;
+            if gpu.take(&self.device.unfinished)? == 0 {
+                return Ok(());
+            }
+        }
+        Err(GpuError::Endless {
+            adapter: gpu.name.clone(),
+            stage: "chain",
+        })
+    }
+}

@@ -1,0 +1,100 @@
+//! Long lists, large triangles, too little room.
+
+use triptych_spec::grid::lattice::REACH;
+use triptych_spec::ldm::RESOLUTION_MAX;
+
+use super::*;
+
+fn longest(maps: &Maps, made: &Layers) -> usize {
+    let all = (0..maps.pixels).map(|pixel| made.list(pixel).len());
+    all.max().unwrap_or(0)
+}
+
+/// Lists longer than an invocation sorts, of equal keys and of others, and short ones beside them.
+#[test]
+fn long_lists() {
+    let mut mesh = sphere([3e6; 3], 9, 7);
+    for i in 0..5 * SHORT.cast_signed() + 3 {
+        // Three at a time lie in one plane.
+        let z = 1000 * (i - i % 3) % 70_001;
+        quad(&mut mesh, [-900_000, -700_000], [1_000_000, 500_000], z);
+    }
+    let sets = [[0.0, 0.0, 1.0], [0.6, 0.0, -0.8]];
+    let maps = Maps::new(&sets, around(&mesh.vertices), 31).unwrap();
+    let made = layers(&maps, &mesh).unwrap();
+    let length = longest(&maps, &made);
+    assert!(length > 4 * SHORT as usize, "{length}");
+    let check = everywhere((&maps, &mesh), AMPLE, |stages, name| {
+        lists_agree(stages, &maps, &made, name)
+    });
+    check.unwrap();
+}
+
+/// A chain that one dispatch does not sort goes on in the next.
+#[test]
+fn chains_in_parts() {
+    let mut mesh = empty();
+    for i in 0..4000 {
+        quad(&mut mesh, [-9000, -9000], [9000, 9000], i * 7919 % 8192);
+    }
+    let maps = Maps::new(&[[0.0, 0.0, 1.0]], around(&mesh.vertices), 8).unwrap();
+    let made = layers(&maps, &mesh).unwrap();
+    let length = longest(&maps, &made);
+    assert!(length * 11 > STEPS as usize, "{length}");
+    let check = everywhere((&maps, &mesh), AMPLE, |stages, name| {
+        lists_agree(stages, &maps, &made, name)
+    });
+    check.unwrap();
+}
+
+/// The finest maps, with as many large triangles as a workgroup has.
+#[test]
+fn large_triangles() {
+    let mut mesh = empty();
+    for i in 0..33 {
+        let z = (i - 16) * 500_000;
+        quad(&mut mesh, [-REACH, -REACH], [REACH, REACH], z);
+    }
+    let sets = [[0.0, 0.0, 1.0], [0.36, 0.48, 0.8]];
+    for resolution in [362, RESOLUTION_MAX] {
+        let maps = Maps::new(&sets, around(&mesh.vertices), resolution).unwrap();
+        let made = layers(&maps, &mesh).unwrap();
+        let check = everywhere((&maps, &mesh), AMPLE, |stages, name| {
+            let seen = stages.layers().expect("room");
+            prop_assert!(seen == made, "{}: {}", name, first_apart(&seen, &made));
+            Ok(())
+        });
+        check.unwrap();
+    }
+}
+
+/// What has no room is left out, and nothing else.
+#[test]
+fn overflowing_chains() {
+    let mesh = sphere([3e6; 3], 12, 8);
+    let sets = [[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]];
+    let maps = Maps::new(&sets, around(&mesh.vertices), 20).unwrap();
+    let made = layers(&maps, &mesh).unwrap();
+    let total = u32::try_from(made.keys.len()).unwrap();
+    // In one batch and in two.
+    let budgets = [AMPLE, 32 * u64::from(maps.maps[1].first + 1)];
+    let cases = [0, 1, total / 2, total - 1].map(|c| budgets.map(|b| (c, b)));
+    for (capacity, budget) in cases.into_iter().flatten() {
+        let check = everywhere((&maps, &mesh), budget, |stages, name| {
+            let chains = stages.chain(capacity).expect("room");
+            prop_assert_eq!(chains.attempts, u64::from(total), "{}", name);
+            prop_assert_eq!(chains.links.len(), capacity as usize);
+            let mut held = 0;
+            for pixel in 0..maps.pixels {
+                let mut rest = made.list(pixel).iter();
+                let keys = linked(&chains, pixel as usize);
+                held += keys.len();
+                let is_part = keys.iter().all(|key| rest.any(|own| own == key));
+                prop_assert!(is_part, "{}: {:?}", name, keys);
+            }
+            prop_assert_eq!(held, capacity as usize);
+            Ok(())
+        });
+        check.unwrap();
+    }
+}
