@@ -1,5 +1,6 @@
-// The pixels of a map that a triangle covers. A workgroup takes 64 triangles of a map: small ones
-// by an invocation each, large ones by all of it, one after another.
+// The pixels of a map that triangles cover. A workgroup takes 64 triangles of a map: it leaves out
+// those whose box holds no middle of a pixel, as most are small; of what is left, its invocations
+// share the pixels of all boxes.
 // Twins: spec/src/raster.rs, whose rules these are, and spec/src/ldm/layers.rs.
 //
 // Edge functions fit in 32 bits: they are at most the area of a map in sub-pixels, and what wraps
@@ -7,37 +8,167 @@
 //#import item
 //#import maps
 //#import depth
+//#import scan
 
 // Three for each triangle, on the lattice; the fourth numbers are not used.
 @group(0) @binding(2) var<storage, read> corners: array<vec4<i32>>;
 
-// Boxes of up to so many pixels are small.
-const FEW: u32 = 16u;
-
-struct Cover {
-    // In positive orientation: x, y in sub-pixels from the map's corner, and the key.
+// A triangle in positive orientation: x, y in sub-pixels from the map's corner, and the key.
+struct Held {
     a: vec3<i32>,
+    // The first pixel of its box, and pixels a row.
+    column: i32,
     b: vec3<i32>,
+    row: i32,
     c: vec3<i32>,
-    // Twice the area, positive unless nothing is covered.
-    area: i32,
-    // The smallest edge values of a covered sample.
-    least: vec3<i32>,
-    // Number of the map's first pixel in the batch, and its pixels a row.
-    first: u32,
     width: u32,
-    // Pixels of the box: the first, how many, where it stands, and from one to the next.
-    low: vec2<i32>,
-    size: vec2<u32>,
-    at: vec2<u32>,
-    stride: vec2<u32>,
-    // Pixels that are still to be looked at.
-    left: u32,
+}
+
+var<workgroup> held: array<Held, 64>;
+
+// Pixels of the boxes of all triangles before each, and of all.
+var<workgroup> firsts: array<u32, 64>;
+var<workgroup> all_pixels: u32;
+
+// Triangles whose boxes may hold the middle of a pixel.
+var<workgroup> chosen: array<u32, 64>;
+var<workgroup> all_chosen: atomic<u32>;
+
+// What a workgroup draws into which map.
+struct Job {
+    map: Map,
+    // Its first triangle, beyond all of them if the workgroup is one too many.
+    first: u32,
+}
+
+fn job_of(chunk: u32) -> Job {
+    let chunks = (told.triangles + WORKGROUP - 1u) / WORKGROUP;
+    let number = chunk / max(chunks, 1u);
+    if number >= told.maps {
+        return Job(maps[told.first_map], told.triangles);
+    }
+    return Job(maps[told.first_map + number], chunk % chunks * WORKGROUP);
+}
+
+// Pixels of which a box from `low` to `high`, in sub-pixels, holds the middle.
+struct Box {
+    first: vec2<i32>,
+    last: vec2<i32>,
+}
+
+fn half_pixel() -> i32 {
+    return 1 << (told.bits - 1u);
+}
+
+// Shifts round down, also below zero: the first middle at or after `low`, the last up to `high`.
+fn box_of(map: Map, low: vec2<i32>, high: vec2<i32>) -> Box {
+    let begin = vec2(0, i32(told.first_row));
+    let end = vec2(i32(map.width), i32(min(map.height, told.first_row + told.rows)));
+    let first = (low + (half_pixel() - 1)) >> vec2(told.bits);
+    let last = (high - half_pixel()) >> vec2(told.bits);
+    return Box(max(first, begin), min(last, end - 1));
+}
+
+fn is_empty(box: Box) -> bool {
+    return any(box.first > box.last);
+}
+
+// Whether a triangle's box may hold a middle: in f32, and one sub-pixel wider to each side.
+//
+// Corners less the lowest one drawn are exact. The products of a place add up to at most the scene's
+// diagonal, 46,340 sub-pixels, and so does the base; conversions, products and sums are off by at most
+// 6 U of both together, 0.07 sub-pixels for U = 2^-23, the base by 0.01. An exact place is rounded by
+// half. Floor takes less than one more off, below, and two are added above.
+fn may_cover(map: Map, triangle: u32) -> bool {
+    let scale = ldexp(1.0, -i32(told.shift));
+    let columns = vec3<f32>(map.columns) * scale;
+    let rows = vec3<f32>(map.rows) * scale;
+    var low = vec2(1e9);
+    var high = vec2(-1e9);
+    for (var i = 0u; i < 3u; i += 1u) {
+        let point = vec3<f32>(corners[3u * triangle + i].xyz - vec3(told.low_x, told.low_y, told.low_z));
+        let place = vec2(dot(columns, point), dot(rows, point)) + map.base;
+        low = min(low, place);
+        high = max(high, place);
+    }
+    return !is_empty(box_of(map, vec2<i32>(floor(low)) - 1, vec2<i32>(floor(high)) + 2));
+}
+
+fn place_of(map: Map, triangle: u32, i: u32) -> vec3<i32> {
+    return vec3(column_and_row(map, corners[3u * triangle + i].xyz), 0);
 }
 
 // Twice the signed area of a, b, point.
 fn edge(a: vec3<i32>, b: vec3<i32>, point: vec2<i32>) -> i32 {
     return (b.x - a.x) * (point.y - a.y) - (b.y - a.y) * (point.x - a.x);
+}
+
+// Holds a triangle, if it has an area, and gives the number of pixels of its box.
+fn hold(map: Map, triangle: u32, lane: u32, with_keys: bool) -> u32 {
+    var a = place_of(map, triangle, 0u);
+    var b = place_of(map, triangle, 1u);
+    var c = place_of(map, triangle, 2u);
+    let area = edge(a, b, c.xy);
+    let box = box_of(map, min(a.xy, min(b.xy, c.xy)), max(a.xy, max(b.xy, c.xy)));
+    if area == 0 || is_empty(box) {
+        return 0u;
+    }
+    if with_keys {
+        a.z = key_of(map, corners[3u * triangle].xyz);
+        b.z = key_of(map, corners[3u * triangle + 1u].xyz);
+        c.z = key_of(map, corners[3u * triangle + 2u].xyz);
+    }
+    let size = vec2<u32>(box.last - box.first + 1);
+    held[lane] = Held(a, box.first.x, b, box.first.y, c, size.x);
+    if area < 0 {
+        held[lane].b = c;
+        held[lane].c = b;
+    }
+    return size.x * size.y;
+}
+
+// Looks at 64 triangles, and gives the number of pixels to be shared. All of a workgroup come
+// along.
+fn look(job: Job, lane: u32, with_keys: bool) -> u32 {
+    let triangle = job.first + lane;
+    if triangle < told.triangles {
+        if may_cover(job.map, triangle) {
+            chosen[atomicAdd(&all_chosen, 1u)] = triangle;
+        }
+    }
+    workgroupBarrier();
+    var pixels = 0u;
+    if lane < atomicLoad(&all_chosen) {
+        pixels = hold(job.map, chosen[lane], lane, with_keys);
+    }
+    let before = parts_before(lane, pixels);
+    firsts[lane] = before;
+    if lane == WORKGROUP - 1u {
+        all_pixels = before + pixels;
+    }
+    return workgroupUniformLoad(&all_pixels);
+}
+
+// A pixel of a triangle's box.
+struct Sample {
+    is_covered: bool,
+    // Among those of the batch.
+    pixel: u32,
+    // The triangle, and its edge values there.
+    held: u32,
+    edges: vec3<i32>,
+}
+
+// Of all triangles held, the last that begins at or before a pixel.
+fn holder(i: u32) -> u32 {
+    var at = 0u;
+    at += select(0u, 32u, firsts[at + 32u] <= i);
+    at += select(0u, 16u, firsts[at + 16u] <= i);
+    at += select(0u, 8u, firsts[at + 8u] <= i);
+    at += select(0u, 4u, firsts[at + 4u] <= i);
+    at += select(0u, 2u, firsts[at + 2u] <= i);
+    at += select(0u, 1u, firsts[at + 1u] <= i);
+    return at;
 }
 
 // 0 on a top or left edge, else 1: the smallest edge value of a covered sample.
@@ -46,134 +177,26 @@ fn least(a: vec3<i32>, b: vec3<i32>) -> i32 {
     return select(1, 0, top_left);
 }
 
-fn sample(pixel: vec2<i32>) -> vec2<i32> {
-    return (pixel << vec2(told.bits)) + (1 << (told.bits - 1u));
-}
-
-// Of corners in any orientation, all pixels of the box that are in the map and the rows to be drawn.
-fn cover_of(map: Map, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>) -> Cover {
-    let half = 1 << (told.bits - 1u);
-    let low = min(a.xy, min(b.xy, c.xy));
-    let high = max(a.xy, max(b.xy, c.xy));
-    let begin = vec2(0, i32(told.first_row));
-    let end = vec2(i32(map.width), i32(min(map.height, told.first_row + told.rows)));
-    // Shifts round down, also below zero: the first at or after `low`, the last up to `high`.
-    let first = max(begin, (low + (half - 1)) >> vec2(told.bits));
-    let last = min(end - 1, (high - half) >> vec2(told.bits));
-    var cover: Cover;
-    cover.low = first;
-    cover.size = vec2<u32>(max(last - first + 1, vec2(0)));
-    cover.left = cover.size.x * cover.size.y;
-    cover.stride = vec2(1u, 0u);
-    cover.first = map.first - told.first_pixel;
-    cover.width = map.width;
-    if cover.left == 0u {
-        return cover;
-    }
-    cover.a = a;
-    cover.b = b;
-    cover.c = c;
-    cover.area = edge(a, b, c.xy);
-    if cover.area < 0 {
-        cover.b = c;
-        cover.c = b;
-        cover.area = -cover.area;
-    }
-    if cover.area == 0 {
-        cover.left = 0u;
-    }
-    cover.least = vec3(least(cover.b, cover.c), least(cover.c, cover.a), least(cover.a, cover.b));
-    return cover;
-}
-
-fn pixel_of(cover: Cover) -> vec2<i32> {
-    return cover.low + vec2<i32>(cover.at);
-}
-
-fn edges(cover: Cover) -> vec3<i32> {
-    let point = sample(pixel_of(cover));
-    return vec3(edge(cover.b, cover.c, point), edge(cover.c, cover.a, point), edge(cover.a, cover.b, point));
-}
-
-fn covers(cover: Cover, edges: vec3<i32>) -> bool {
-    return all(edges >= cover.least);
-}
-
-// The pixel where it stands, among those of the batch.
-fn number(cover: Cover) -> u32 {
-    let pixel = vec2<u32>(pixel_of(cover));
-    return cover.first + pixel.y * cover.width + pixel.x;
+fn sample_of(job: Job, i: u32) -> Sample {
+    let at = holder(i);
+    let own = held[at];
+    let number = i - firsts[at];
+    let pixel = vec2(own.column, own.row) + vec2<i32>(vec2(number % own.width, number / own.width));
+    let middle = (pixel << vec2(told.bits)) + half_pixel();
+    let edges = vec3(
+        edge(own.b, own.c, middle),
+        edge(own.c, own.a, middle),
+        edge(own.a, own.b, middle),
+    );
+    let least = vec3(least(own.b, own.c), least(own.c, own.a), least(own.a, own.b));
+    let first = job.map.first - told.first_pixel;
+    return Sample(all(edges >= least), first + u32(pixel.y) * job.map.width + u32(pixel.x), at, edges);
 }
 
 // Edge values of a covered sample add up to the area.
-fn key_at(cover: Cover, edges: vec3<i32>) -> u32 {
-    let z = vec3<u32>(vec3(cover.a.z, cover.b.z, cover.c.z));
-    return depth_key(z, wide(cover.area), wide(edges.x), wide(edges.y), wide(edges.z));
-}
-
-fn onward(given: Cover) -> Cover {
-    var cover = given;
-    cover.left -= 1u;
-    cover.at += cover.stride;
-    if cover.at.x >= cover.size.x {
-        cover.at.x -= cover.size.x;
-        cover.at.y += 1u;
-    }
-    return cover;
-}
-
-// Large triangles of a workgroup.
-var<workgroup> waiting: array<array<vec3<i32>, 3>, 64>;
-var<workgroup> all_waiting: atomic<u32>;
-
-// The map of a workgroup, and the triangle of an invocation: beyond all maps or triangles, nothing.
-struct Share {
-    map: u32,
-    triangle: u32,
-}
-
-fn share_of(chunk: u32, lane: u32) -> Share {
-    let chunks = (told.triangles + WORKGROUP - 1u) / WORKGROUP;
-    return Share(told.first_map + chunk / chunks, chunk % chunks * WORKGROUP + lane);
-}
-
-// An invocation's own triangle, if it is small. Large ones wait for the whole workgroup, all of
-// which comes along.
-fn own(chunk: u32, lane: u32) -> Cover {
-    let share = share_of(chunk, lane);
-    var cover: Cover;
-    if share.map < told.first_map + told.maps && share.triangle < told.triangles {
-        let map = maps[share.map];
-        var placed: array<vec3<i32>, 3>;
-        for (var i = 0u; i < 3u; i += 1u) {
-            let point = corners[3u * share.triangle + i].xyz;
-            placed[i] = vec3(column_and_row(map, point), key_of(map, point));
-        }
-        cover = cover_of(map, placed[0], placed[1], placed[2]);
-        if cover.left > FEW {
-            waiting[atomicAdd(&all_waiting, 1u)] = placed;
-            cover.left = 0u;
-        }
-    }
-    workgroupBarrier();
-    return cover;
-}
-
-// How many triangles wait for the workgroup, after that.
-fn shared_ones() -> u32 {
-    return atomicLoad(&all_waiting);
-}
-
-// An invocation's pixels of one of them: neighbours look at neighbours.
-fn shared_one(chunk: u32, i: u32, lane: u32) -> Cover {
-    let placed = waiting[i];
-    var cover = cover_of(maps[share_of(chunk, lane).map], placed[0], placed[1], placed[2]);
-    let total = cover.left;
-    cover.left = 0u;
-    if lane < total {
-        cover.left = (total - lane + WORKGROUP - 1u) / WORKGROUP;
-        cover.at = vec2(lane % cover.size.x, lane / cover.size.x);
-        cover.stride = vec2(WORKGROUP % cover.size.x, WORKGROUP / cover.size.x);
-    }
-    return cover;
+fn key_at(sample: Sample) -> u32 {
+    let own = held[sample.held];
+    let z = vec3<u32>(vec3(own.a.z, own.b.z, own.c.z));
+    let area = sample.edges.x + sample.edges.y + sample.edges.z;
+    return depth_key(z, wide(area), wide(sample.edges.x), wide(sample.edges.y), wide(sample.edges.z));
 }

@@ -18,7 +18,7 @@ pub use stages::Stages;
 pub use timed::{Shape, Span, Timed};
 
 /// Kernels that put long lists in order.
-const LONG: [&str; 2] = ["fill_runs", "fill_merge"];
+const LONGEST: [&str; 2] = ["fill_runs", "fill_merge"];
 
 /// Boxes of up to so many cells are gone through by one invocation. Twin: `SMALL` in
 /// `sweep.wgsl`.

@@ -118,16 +118,17 @@ fn fill_chunks(
     }
 }
 
-// Short lists in order of id; one cell.
+// Lists in order of id; 64 cells.
 @compute @workgroup_size(64)
-fn fill_sort(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let cell = item(id, groups);
-    if cell < cells.items {
-        sort_list(cell);
-    }
+fn fill_sort(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    sort_lists(chunk_of(group, groups) * WORKGROUP + lane, cells.items, lane);
 }
 
-// Long lists: runs of SHORT in order; one entry.
+// The longest lists: runs in order; one entry.
 @compute @workgroup_size(64)
 fn fill_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = item(id, groups);

@@ -17,10 +17,6 @@ use triptych_spec::ldm;
 pub use stages::Stages;
 pub use timed::{Span, Timed};
 
-/// Boxes of up to so many pixels are gone through by one invocation. Twin: `FEW` in
-/// `cover.wgsl`.
-pub const FEW: u32 = 16;
-
 /// What kernels are told. Twin: `Told` in `maps.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -57,6 +53,14 @@ pub struct Told {
     pub most: u32,
     /// The power of what a hit lets pass.
     pub power: u32,
+    /// The lowest corner of the box that is drawn, along x.
+    pub low_x: i32,
+    /// Along y.
+    pub low_y: i32,
+    /// Along z.
+    pub low_z: i32,
+    /// Up to a multiple of 16 bytes.
+    pub unused: u32,
 }
 
 /// A map as kernels read it. Twin: `Map` in `maps.wgsl`.
@@ -70,10 +74,13 @@ struct Packed {
     depths: Point,
     first: u32,
     planes: [[i32; 4]; 3],
+    base: [f32; 2],
+    unused: [f32; 2],
 }
 
-impl From<&ldm::Map> for Packed {
-    fn from(map: &ldm::Map) -> Self {
+impl Packed {
+    /// `low` is the lowest corner of what is drawn.
+    fn new(map: &ldm::Map, shift: u32, low: Point) -> Self {
         let [columns, rows, depths] = map.rows;
         let plane = |axis: usize| {
             let [x, y, z] = map.planes[axis];
@@ -87,8 +94,22 @@ impl From<&ldm::Map> for Packed {
             depths,
             first: map.first,
             planes: [0, 1, 2].map(plane),
+            base: [0, 1].map(|axis| base(map.rows[axis], shift, low, map.origin[axis])),
+            unused: [0.0; 2],
         }
     }
+}
+
+/// Where a point is along an axis of a map, from its origin, without rounding but to `f32`.
+fn base(row: Point, shift: u32, point: Point, origin: i32) -> f32 {
+    let products = row
+        .iter()
+        .zip(point)
+        .map(|(r, p)| i64::from(*r) * i64::from(p));
+    let place = products.sum::<i64>() as f64 / (1_u64 << shift) as f64;
+    #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
+    let base = (place - f64::from(origin)) as f32;
+    base
 }
 
 /// A receiver as kernels read it. Twin: `Receiver` in `receiver.wgsl`.

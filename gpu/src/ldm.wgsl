@@ -4,7 +4,6 @@
 // Lists are counted, filled and sorted in passes of their own, and read in later ones; within a
 // pass, invocations meet in atomics only.
 //#import cover
-//#import scan
 //#import sort
 //#import counter
 //#import relink
@@ -47,12 +46,6 @@ struct Open {
 
 @group(0) @binding(17) var<storage, read_write> light: array<vec4<f32>>;
 
-fn count_at(cover: Cover) {
-    if covers(cover, edges(cover)) {
-        atomicAdd(&counts[number(cover)], 1u);
-    }
-}
-
 // 64 triangles of a map.
 @compute @workgroup_size(64)
 fn layers_count(
@@ -60,13 +53,12 @@ fn layers_count(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let chunk = chunk_of(group, groups);
-    for (var cover = own(chunk, lane); cover.left > 0u; cover = onward(cover)) {
-        count_at(cover);
-    }
-    for (var i = 0u; i < shared_ones(); i += 1u) {
-        for (var cover = shared_one(chunk, i, lane); cover.left > 0u; cover = onward(cover)) {
-            count_at(cover);
+    let job = job_of(chunk_of(group, groups));
+    let total = look(job, lane, false);
+    for (var i = lane; i < total; i += WORKGROUP) {
+        let sample = sample_of(job, i);
+        if sample.is_covered {
+            atomicAdd(&counts[sample.pixel], 1u);
         }
     }
 }
@@ -105,45 +97,38 @@ fn layers_ends(
     }
 }
 
-// From the end of each run down; after the last, the end has become the start.
-fn fill_at(cover: Cover) {
-    let edges = edges(cover);
-    if covers(cover, edges) {
-        let address = atomicSub(&counts[number(cover)], 1u) - 1u;
-        if address < told.capacity {
-            listed[address] = key_at(cover, edges);
-        }
-    }
-}
-
-// 64 triangles of a map.
+// 64 triangles of a map: from the end of each run down; after the last, the end has become the
+// start.
 @compute @workgroup_size(64)
 fn layers_fill(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let chunk = chunk_of(group, groups);
-    for (var cover = own(chunk, lane); cover.left > 0u; cover = onward(cover)) {
-        fill_at(cover);
-    }
-    for (var i = 0u; i < shared_ones(); i += 1u) {
-        for (var cover = shared_one(chunk, i, lane); cover.left > 0u; cover = onward(cover)) {
-            fill_at(cover);
+    let job = job_of(chunk_of(group, groups));
+    let total = look(job, lane, true);
+    for (var i = lane; i < total; i += WORKGROUP) {
+        let sample = sample_of(job, i);
+        if sample.is_covered {
+            let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
+            if address < told.capacity {
+                listed[address] = key_at(sample);
+            }
         }
     }
 }
 
-// Short lists in order; one pixel.
+// Lists in order; 64 pixels.
 @compute @workgroup_size(64)
-fn layers_sort(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let pixel = item(id, groups);
-    if pixel < told.items {
-        sort_list(pixel);
-    }
+fn layers_sort(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    sort_lists(chunk_of(group, groups) * WORKGROUP + lane, told.items, lane);
 }
 
-// Long lists: runs of SHORT in order; one key.
+// The longest lists: runs in order; one key.
 @compute @workgroup_size(64)
 fn layers_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let key = item(id, groups);
@@ -161,32 +146,23 @@ fn layers_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     }
 }
 
-// The paper's lists, in whatever order invocations come.
-fn chain_at(cover: Cover) {
-    let edges = edges(cover);
-    if covers(cover, edges) {
-        let address = claim();
-        if address < told.capacity {
-            let next = atomicExchange(&heads[number(cover)], address);
-            nodes[address] = Link(key_at(cover, edges), next);
-        }
-    }
-}
-
-// 64 triangles of a map.
+// 64 triangles of a map: the paper's lists, in whatever order invocations come.
 @compute @workgroup_size(64)
 fn chain(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let chunk = chunk_of(group, groups);
-    for (var cover = own(chunk, lane); cover.left > 0u; cover = onward(cover)) {
-        chain_at(cover);
-    }
-    for (var i = 0u; i < shared_ones(); i += 1u) {
-        for (var cover = shared_one(chunk, i, lane); cover.left > 0u; cover = onward(cover)) {
-            chain_at(cover);
+    let job = job_of(chunk_of(group, groups));
+    let total = look(job, lane, true);
+    for (var i = lane; i < total; i += WORKGROUP) {
+        let sample = sample_of(job, i);
+        if sample.is_covered {
+            let address = claim();
+            if address < told.capacity {
+                let next = atomicExchange(&heads[sample.pixel], address);
+                nodes[address] = Link(key_at(sample), next);
+            }
         }
     }
 }

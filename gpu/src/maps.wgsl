@@ -30,6 +30,11 @@ struct Told {
     // Keys from which on nothing blocks, and the power of what a hit lets pass; 0: all hits block.
     most: u32,
     power: u32,
+    // The lowest corner of the box that is drawn.
+    low_x: i32,
+    low_y: i32,
+    low_z: i32,
+    unused: u32,
 }
 
 @group(0) @binding(0) var<uniform> told: Told;
@@ -52,6 +57,9 @@ struct Map {
     top: i32,
     towards: vec3<i32>,
     nearest: i32,
+    // Where the lowest corner of the box that is drawn is, rounded to f32.
+    base: vec2<f32>,
+    unused: vec2<f32>,
 }
 
 @group(0) @binding(1) var<storage, read> maps: array<Map>;

@@ -1,21 +1,58 @@
-// Lists in rising order: short ones by an invocation each, longer ones by one for each entry.
+// Lists in rising order: short ones by an invocation each, long ones by a workgroup each, in its
+// own memory, and the longest, if there are any, by an invocation for each entry.
 // Imported where there is a counter `unfinished`.
+//#import item
 //#import runs
 
 // Entries, with runs twice as long in order.
 @group(0) @binding(8) var<storage, read_write> merged: array<u32>;
 
 // Lists up to so long are sorted by one invocation each.
-const SHORT: u32 = 64u;
+const SHORT: u32 = 32u;
 
-// A short list; the length of a longer one goes to `unfinished`.
-fn sort_list(list: u32) {
-    let start = offsets[list];
-    let end = offsets[list + 1u];
-    if end - start > SHORT {
-        atomicMax(&unfinished, end - start);
-        return;
+// Up to so long, by a workgroup.
+const LONG: u32 = 512u;
+
+// Entries of the longest that are put in order at first.
+const RUN: u32 = 64u;
+
+// Of 64 lists, those that a workgroup sorts one after another.
+struct Long {
+    start: u32,
+    length: u32,
+}
+
+var<workgroup> longs: array<Long, 64>;
+var<workgroup> all_longs: atomic<u32>;
+var<workgroup> number_of_longs: u32;
+var<workgroup> own_values: array<u32, LONG>;
+
+// A list for each invocation of a workgroup, all of which come along. The length of what is too
+// long goes to `unfinished`.
+fn sort_lists(list: u32, lists: u32, lane: u32) {
+    if list < lists {
+        let start = offsets[list];
+        let length = offsets[list + 1u] - start;
+        if length > LONG {
+            atomicMax(&unfinished, length);
+        } else if length > SHORT {
+            longs[atomicAdd(&all_longs, 1u)] = Long(start, length);
+        } else {
+            sort_short(start, start + length);
+        }
     }
+    workgroupBarrier();
+    if lane == 0u {
+        number_of_longs = atomicLoad(&all_longs);
+    }
+    let count = workgroupUniformLoad(&number_of_longs);
+    for (var i = 0u; i < count; i += 1u) {
+        let long = workgroupUniformLoad(&longs[i]);
+        sort_long(long.start, long.length, lane);
+    }
+}
+
+fn sort_short(start: u32, end: u32) {
     for (var i = start + 1u; i < end; i += 1u) {
         let value = listed[i];
         var at = i;
@@ -27,17 +64,56 @@ fn sort_list(list: u32) {
     }
 }
 
-// Long lists, of so many lists: runs of SHORT in order; an entry's rank is its place.
+// Batcher's bitonic sort, up to the next power of two; what is not there is largest.
+fn sort_long(start: u32, length: u32, lane: u32) {
+    var size = 2u * RUN;
+    while size < length {
+        size *= 2u;
+    }
+    for (var i = lane; i < size; i += WORKGROUP) {
+        own_values[i] = 0xffffffffu;
+        if i < length {
+            own_values[i] = listed[start + i];
+        }
+    }
+    workgroupBarrier();
+    for (var block = 2u; block <= size; block *= 2u) {
+        for (var reach = block / 2u; reach > 0u; reach /= 2u) {
+            for (var i = lane; i < size; i += WORKGROUP) {
+                exchange(i, i ^ reach, (i & block) == 0u);
+            }
+            workgroupBarrier();
+        }
+    }
+    for (var i = lane; i < length; i += WORKGROUP) {
+        listed[start + i] = own_values[i];
+    }
+    workgroupBarrier();
+}
+
+// Two values in order, or in the reverse; by the first of both.
+fn exchange(one: u32, other: u32, rising: bool) {
+    if other > one {
+        let a = own_values[one];
+        let b = own_values[other];
+        if (a > b) == rising {
+            own_values[one] = b;
+            own_values[other] = a;
+        }
+    }
+}
+
+// The longest lists, of so many lists: runs of RUN in order; an entry's rank is its place.
 fn sort_run(entry: u32, lists: u32) {
     let list = list_of(entry, lists);
     let start = offsets[list];
     let end = offsets[list + 1u];
-    if end - start <= SHORT {
+    if end - start <= LONG {
         merged[entry] = listed[entry];
         return;
     }
-    let own = start + (entry - start) / SHORT * SHORT;
-    merged[own + rank(entry, own, min(own + SHORT, end))] = listed[entry];
+    let own = start + (entry - start) / RUN * RUN;
+    merged[own + rank(entry, own, min(own + RUN, end))] = listed[entry];
 }
 
 // The same: two runs in order become one. The first one's are before their equals.
@@ -46,7 +122,7 @@ fn merge_runs(entry: u32, lists: u32, size: u32) {
     let start = offsets[list];
     let end = offsets[list + 1u];
     let value = listed[entry];
-    if end - start <= SHORT {
+    if end - start <= LONG {
         merged[entry] = value;
         return;
     }

@@ -4,8 +4,7 @@ use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
-use triptych_gpu::ldm::FEW;
-use triptych_gpu::lists::{SHORT, TILE};
+use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
@@ -41,14 +40,14 @@ fn constants_are_those_of_rust() {
         ("CORNERS_MAX", corners),
         ("DEPTH_ONE", i64::from(DEPTH_ONE)),
         ("TILE", i64::from(TILE)),
-        ("SHORT", i64::from(SHORT)),
+        ("LONG", i64::from(LONG)),
+        ("RUN", i64::from(RUN)),
         ("SMALL", i64::from(SMALL)),
         ("CHUNK", i64::from(CHUNK)),
         ("FRESH", i64::from(FRESH)),
         ("TRACED", i64::from(TRACED)),
         ("PLACE_MAX", i64::from(PLACE_MAX)),
         ("COARSE_BITS", i64::from(COARSE_BITS)),
-        ("FEW", i64::from(FEW)),
         ("PLANE_BITS", i64::from(PLANE_BITS)),
         ("WEIGHT_BITS", i64::from(WEIGHT_BITS)),
     ];

@@ -6,7 +6,7 @@ use triptych_spec::grid::{Blockers, Membership};
 
 use super::device::Device;
 use super::timed::Shape;
-use super::{Cells, LONG};
+use super::{Cells, LONGEST};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -50,7 +50,7 @@ impl<'g> Room<'g> {
         Ok(Self {
             device,
             buffers,
-            swapped: long_passes(LONG, shape.longest).count() % 2 == 1,
+            swapped: long_passes(LONGEST, shape.longest).count() % 2 == 1,
         })
     }
 
@@ -145,7 +145,7 @@ fn build(
     sweep(["fill", "fill_chunks"], &mut passes)?;
     passes.push(device.ready("fill_sort", of_cells, named)?);
     let mut swapped: Vec<(&str, &wgpu::Buffer)> = named.to_vec();
-    for (kernel, run) in long_passes(LONG, shape.longest) {
+    for (kernel, run) in long_passes(LONGEST, shape.longest) {
         let cells = Cells {
             items: shape.entries,
             run,

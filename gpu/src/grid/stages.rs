@@ -7,9 +7,9 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 
 use super::device::Device;
-use super::{Cells, Entry, FRESH, Hit, LONG, Linked, Packed, TRACED};
+use super::{Cells, Entry, FRESH, Hit, LONGEST, Linked, Packed, TRACED};
 use crate::error::GpuError;
-use crate::lists::{SHORT, TILE, long_passes};
+use crate::lists::{LONG, TILE, long_passes};
 
 /// Rays of one dispatch: 32 bytes each, within 128 MiB.
 const RAYS: usize = 1 << 22;
@@ -128,12 +128,12 @@ impl<'g> Stages<'g> {
         self.time += self.device.each("fill_sort", runs(total, 0), &buffers)?;
         // No list is longer than all are together, whatever damaged offsets say.
         let longest = self.device.take_unfinished()?.min(entries);
-        if longest <= SHORT {
+        if longest <= LONG {
             return Ok(());
         }
         let size = 4 * u64::from(entries);
         let mut merged = self.device.gpu.storage("entries of cells", size)?;
-        for (kernel, run) in long_passes(LONG, longest) {
+        for (kernel, run) in long_passes(LONGEST, longest) {
             let buffers = [
                 ("offsets", &self.offsets),
                 ("listed", &self.prims),

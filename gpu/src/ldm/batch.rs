@@ -6,9 +6,8 @@ use triptych_spec::ldm::Maps;
 
 use super::Told;
 
-/// Iterations of all loops of a workgroup that draws 64 triangles into one map, at most: if all
-/// are as large as the map, a lane looks at as many pixels as the map has. llvmpipe leaves every
-/// loop after 65,535 in all; what is left is for small triangles.
+/// Pixels that an invocation looks at when 64 triangles are drawn into a map, at most: if all are as
+/// large as the map, as many as the map has. llvmpipe leaves every loop after 65,535 iterations.
 const DRAWN: u32 = 60_000;
 
 /// Maps that are built at once.

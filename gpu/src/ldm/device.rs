@@ -48,7 +48,12 @@ impl<'g> Device<'g> {
         })?;
         let corners = (0..triangles).flat_map(|prim| blockers.corners(prim));
         let corners: Vec<[i32; 4]> = corners.map(|[x, y, z]| [x, y, z, 0]).collect();
-        let maps: Vec<Packed> = all.maps.iter().map(Packed::from).collect();
+        let drawn = blockers.triangles.iter().flatten();
+        let drawn = drawn.map(|row| blockers.vertices[*row as usize]);
+        let low = drawn.reduce(|a, b| [0, 1, 2].map(|i| a[i].min(b[i])));
+        let low = low.unwrap_or_default();
+        let packed = |map| Packed::new(map, all.shifts[0], low);
+        let maps: Vec<Packed> = all.maps.iter().map(packed).collect();
         Ok(Self {
             told: Told {
                 bits: all.bits,
@@ -56,6 +61,9 @@ impl<'g> Device<'g> {
                 half: all.half,
                 half_shift: all.half_shift,
                 triangles,
+                low_x: low[0],
+                low_y: low[1],
+                low_z: low[2],
                 ..Told::default()
             },
             maps: gpu.upload("maps", &maps)?,

@@ -8,10 +8,10 @@ use super::Told;
 use super::batch::{Span, spans};
 use super::device::Device;
 use crate::error::GpuError;
-use crate::lists::{SHORT, TILE, long_passes};
+use crate::lists::{LONG, TILE, long_passes};
 
 /// Kernels that put long lists in order.
-pub(super) const LONG: [&str; 2] = ["layers_runs", "layers_merge"];
+pub(super) const LONGEST: [&str; 2] = ["layers_runs", "layers_merge"];
 
 /// A batch of maps with its lists.
 pub(super) struct Batch {
@@ -22,7 +22,7 @@ pub(super) struct Batch {
     pub(super) keys: wgpu::Buffer,
     /// How many keys there are.
     pub(super) total: u32,
-    /// Keys of the longest list, if it is longer than [`SHORT`].
+    /// Keys of the longest list, if it is longer than [`LONG`].
     pub(super) longest: u32,
 }
 
@@ -132,11 +132,11 @@ impl Device<'_> {
         let mut time = self.run(&[self.each("layers_sort", told, &buffers)?])?;
         // No list is longer than all are together, whatever damaged offsets say.
         batch.longest = self.gpu.take(&self.unfinished)?.min(batch.total);
-        if batch.longest <= SHORT {
+        if batch.longest <= LONG {
             return Ok(time);
         }
         let mut merged = self.gpu.storage("keys of pixels", batch.keys.size())?;
-        for (entry, run) in long_passes(LONG, batch.longest) {
+        for (entry, run) in long_passes(LONGEST, batch.longest) {
             let buffers = [
                 ("offsets", &batch.offsets),
                 ("listed", &batch.keys),

@@ -10,12 +10,12 @@ use super::Open;
 use super::batch;
 use super::device::Device;
 use super::light::{ASKED, asking, fading, lists};
-use super::lists::{Batch, LONG};
+use super::lists::{Batch, LONGEST};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
-use crate::lists::{SHORT, TILE, long_passes};
+use crate::lists::{LONG, TILE, long_passes};
 use crate::timer::Timer;
 
 /// What is timed, in the order of all results here.
@@ -97,7 +97,7 @@ impl<'g> Timed<'g> {
         let keys = gpu.storage("keys of pixels", 4 * u64::from(total))?;
         let tiles = 4 * u64::from(span.len().div_ceil(TILE));
         let sums = gpu.storage("sums of tiles", tiles)?;
-        let more = if longest > SHORT { keys.size() } else { 0 };
+        let more = if longest > LONG { keys.size() } else { 0 };
         let merged = gpu.storage("keys of pixels", more)?;
         self.bytes += offsets.size() + keys.size() + sums.size() + more;
         let mut named = vec![
@@ -117,7 +117,7 @@ impl<'g> Timed<'g> {
         let fill = device.draw("layers_fill", (&span, total), &named)?;
         let scan = device.scan(&span, &named)?;
         let mut swapped = false;
-        for (entry, run) in long_passes(LONG, longest) {
+        for (entry, run) in long_passes(LONGEST, longest) {
             let told = super::Told {
                 items: total,
                 run,

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::ldm::{Chains, Stages};
-use triptych_gpu::lists::SHORT;
+use triptych_gpu::lists::LONG;
 use triptych_spec::abuffer::EOL;
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{
