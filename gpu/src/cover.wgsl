@@ -34,20 +34,37 @@ var<workgroup> all_pixels: u32;
 var<workgroup> chosen: array<u32, 64>;
 var<workgroup> all_chosen: atomic<u32>;
 
-// What a workgroup draws into which map.
+// What a workgroup draws into which maps.
 struct Job {
-    map: Map,
-    // Its first triangle, beyond all of them if the workgroup is one too many.
-    first: u32,
+    first_map: u32,
+    end: u32,
+    // The triangle of an invocation, if there is one.
+    triangle: u32,
+    exists: bool,
 }
 
-fn job_of(chunk: u32) -> Job {
-    let chunks = (told.triangles + WORKGROUP - 1u) / WORKGROUP;
-    let number = chunk / max(chunks, 1u);
-    if number >= told.maps {
-        return Job(maps[told.first_map], told.triangles);
-    }
-    return Job(maps[told.first_map + number], chunk % chunks * WORKGROUP);
+// Corners are read once for all maps of a job.
+fn job_of(chunk: u32, lane: u32) -> Job {
+    let chunks = max((told.triangles + WORKGROUP - 1u) / WORKGROUP, 1u);
+    let first = chunk / chunks * told.at_once;
+    let triangle = chunk % chunks * WORKGROUP + lane;
+    return Job(
+        told.first_map + min(first, told.maps),
+        told.first_map + min(first + told.at_once, told.maps),
+        triangle,
+        triangle < told.triangles,
+    );
+}
+
+struct Triangle {
+    a: vec3<i32>,
+    b: vec3<i32>,
+    c: vec3<i32>,
+}
+
+fn triangle_of(job: Job) -> Triangle {
+    let at = 3u * min(job.triangle, told.triangles - 1u);
+    return Triangle(corners[at].xyz, corners[at + 1u].xyz, corners[at + 2u].xyz);
 }
 
 // Pixels of which a box from `low` to `high`, in sub-pixels, holds the middle.
@@ -79,23 +96,23 @@ fn is_empty(box: Box) -> bool {
 // diagonal, 46,340 sub-pixels, and so does the base; conversions, products and sums are off by at most
 // 6 U of both together, 0.07 sub-pixels for U = 2^-23, the base by 0.01. An exact place is rounded by
 // half. Floor takes less than one more off, below, and two are added above.
-fn may_cover(map: Map, triangle: u32) -> bool {
+fn may_cover(map: Map, triangle: Triangle) -> bool {
     let scale = ldexp(1.0, -i32(told.shift));
     let columns = vec3<f32>(map.columns) * scale;
     let rows = vec3<f32>(map.rows) * scale;
-    var low = vec2(1e9);
-    var high = vec2(-1e9);
-    for (var i = 0u; i < 3u; i += 1u) {
-        let point = vec3<f32>(corners[3u * triangle + i].xyz - vec3(told.low_x, told.low_y, told.low_z));
-        let place = vec2(dot(columns, point), dot(rows, point)) + map.base;
-        low = min(low, place);
-        high = max(high, place);
-    }
+    let lowest = vec3(told.low_x, told.low_y, told.low_z);
+    let a = vec3<f32>(triangle.a - lowest);
+    let b = vec3<f32>(triangle.b - lowest);
+    let c = vec3<f32>(triangle.c - lowest);
+    let x = vec3(dot(columns, a), dot(columns, b), dot(columns, c)) + map.base.x;
+    let y = vec3(dot(rows, a), dot(rows, b), dot(rows, c)) + map.base.y;
+    let low = vec2(min(x.x, min(x.y, x.z)), min(y.x, min(y.y, y.z)));
+    let high = vec2(max(x.x, max(x.y, x.z)), max(y.x, max(y.y, y.z)));
     return !is_empty(box_of(map, vec2<i32>(floor(low)) - 1, vec2<i32>(floor(high)) + 2));
 }
 
-fn place_of(map: Map, triangle: u32, i: u32) -> vec3<i32> {
-    return vec3(column_and_row(map, corners[3u * triangle + i].xyz), 0);
+fn place_of(map: Map, point: vec3<i32>) -> vec3<i32> {
+    return vec3(column_and_row(map, point), 0);
 }
 
 // Twice the signed area of a, b, point.
@@ -104,19 +121,20 @@ fn edge(a: vec3<i32>, b: vec3<i32>, point: vec2<i32>) -> i32 {
 }
 
 // Holds a triangle, if it has an area, and gives the number of pixels of its box.
-fn hold(map: Map, triangle: u32, lane: u32, with_keys: bool) -> u32 {
-    var a = place_of(map, triangle, 0u);
-    var b = place_of(map, triangle, 1u);
-    var c = place_of(map, triangle, 2u);
+fn hold(map: Map, number: u32, lane: u32, with_keys: bool) -> u32 {
+    let points = Triangle(corners[3u * number].xyz, corners[3u * number + 1u].xyz, corners[3u * number + 2u].xyz);
+    var a = place_of(map, points.a);
+    var b = place_of(map, points.b);
+    var c = place_of(map, points.c);
     let area = edge(a, b, c.xy);
     let box = box_of(map, min(a.xy, min(b.xy, c.xy)), max(a.xy, max(b.xy, c.xy)));
     if area == 0 || is_empty(box) {
         return 0u;
     }
     if with_keys {
-        a.z = key_of(map, corners[3u * triangle].xyz);
-        b.z = key_of(map, corners[3u * triangle + 1u].xyz);
-        c.z = key_of(map, corners[3u * triangle + 2u].xyz);
+        a.z = key_of(map, points.a);
+        b.z = key_of(map, points.b);
+        c.z = key_of(map, points.c);
     }
     let size = vec2<u32>(box.last - box.first + 1);
     held[lane] = Held(a, box.first.x, b, box.first.y, c, size.x);
@@ -127,19 +145,22 @@ fn hold(map: Map, triangle: u32, lane: u32, with_keys: bool) -> u32 {
     return size.x * size.y;
 }
 
-// Looks at 64 triangles, and gives the number of pixels to be shared. All of a workgroup come
-// along.
-fn look(job: Job, lane: u32, with_keys: bool) -> u32 {
-    let triangle = job.first + lane;
-    if triangle < told.triangles {
-        if may_cover(job.map, triangle) {
-            chosen[atomicAdd(&all_chosen, 1u)] = triangle;
+// Looks at the triangles of a job, and gives the number of pixels to be shared. All of a workgroup
+// come along.
+fn look(map: Map, job: Job, triangle: Triangle, lane: u32, with_keys: bool) -> u32 {
+    if lane == 0u {
+        atomicStore(&all_chosen, 0u);
+    }
+    workgroupBarrier();
+    if job.exists {
+        if may_cover(map, triangle) {
+            chosen[atomicAdd(&all_chosen, 1u)] = job.triangle;
         }
     }
     workgroupBarrier();
     var pixels = 0u;
     if lane < atomicLoad(&all_chosen) {
-        pixels = hold(job.map, chosen[lane], lane, with_keys);
+        pixels = hold(map, chosen[lane], lane, with_keys);
     }
     let before = parts_before(lane, pixels);
     firsts[lane] = before;
@@ -177,7 +198,7 @@ fn least(a: vec3<i32>, b: vec3<i32>) -> i32 {
     return select(1, 0, top_left);
 }
 
-fn sample_of(job: Job, i: u32) -> Sample {
+fn sample_of(map: Map, i: u32) -> Sample {
     let at = holder(i);
     let own = held[at];
     let number = i - firsts[at];
@@ -189,8 +210,8 @@ fn sample_of(job: Job, i: u32) -> Sample {
         edge(own.a, own.b, middle),
     );
     let least = vec3(least(own.b, own.c), least(own.c, own.a), least(own.a, own.b));
-    let first = job.map.first - told.first_pixel;
-    return Sample(all(edges >= least), first + u32(pixel.y) * job.map.width + u32(pixel.x), at, edges);
+    let first = map.first - told.first_pixel;
+    return Sample(all(edges >= least), first + u32(pixel.y) * map.width + u32(pixel.x), at, edges);
 }
 
 // Edge values of a covered sample add up to the area.

@@ -153,7 +153,11 @@ impl Kernels {
                     layout: None,
                     module: &module.shader,
                     entry_point: Some(entry),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        // Kernels of ours set what they read first.
+                        zero_initialize_workgroup_memory: self.checks == Checks::Kept,
+                        ..Default::default()
+                    },
                     cache: None,
                 });
             Ok(Kernel {

@@ -59,8 +59,8 @@ pub struct Told {
     pub low_y: i32,
     /// Along z.
     pub low_z: i32,
-    /// Up to a multiple of 16 bytes.
-    pub unused: u32,
+    /// Maps of a workgroup that draws triangles.
+    pub at_once: u32,
 }
 
 /// A map as kernels read it. Twin: `Map` in `maps.wgsl`.

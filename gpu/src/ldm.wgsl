@@ -53,13 +53,18 @@ fn layers_count(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let job = job_of(chunk_of(group, groups));
-    let total = look(job, lane, false);
-    for (var i = lane; i < total; i += WORKGROUP) {
-        let sample = sample_of(job, i);
-        if sample.is_covered {
-            atomicAdd(&counts[sample.pixel], 1u);
+    let job = job_of(chunk_of(group, groups), lane);
+    let triangle = triangle_of(job);
+    for (var number = job.first_map; number < job.end; number += 1u) {
+        let map = maps[number];
+        let total = look(map, job, triangle, lane, false);
+        for (var i = lane; i < total; i += WORKGROUP) {
+            let sample = sample_of(map, i);
+            if sample.is_covered {
+                atomicAdd(&counts[sample.pixel], 1u);
+            }
         }
+        workgroupBarrier();
     }
 }
 
@@ -105,16 +110,21 @@ fn layers_fill(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let job = job_of(chunk_of(group, groups));
-    let total = look(job, lane, true);
-    for (var i = lane; i < total; i += WORKGROUP) {
-        let sample = sample_of(job, i);
-        if sample.is_covered {
-            let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
-            if address < told.capacity {
-                listed[address] = key_at(sample);
+    let job = job_of(chunk_of(group, groups), lane);
+    let triangle = triangle_of(job);
+    for (var number = job.first_map; number < job.end; number += 1u) {
+        let map = maps[number];
+        let total = look(map, job, triangle, lane, true);
+        for (var i = lane; i < total; i += WORKGROUP) {
+            let sample = sample_of(map, i);
+            if sample.is_covered {
+                let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
+                if address < told.capacity {
+                    listed[address] = key_at(sample);
+                }
             }
         }
+        workgroupBarrier();
     }
 }
 
@@ -153,17 +163,22 @@ fn chain(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let job = job_of(chunk_of(group, groups));
-    let total = look(job, lane, true);
-    for (var i = lane; i < total; i += WORKGROUP) {
-        let sample = sample_of(job, i);
-        if sample.is_covered {
-            let address = claim();
-            if address < told.capacity {
-                let next = atomicExchange(&heads[sample.pixel], address);
-                nodes[address] = Link(key_at(sample), next);
+    let job = job_of(chunk_of(group, groups), lane);
+    let triangle = triangle_of(job);
+    for (var number = job.first_map; number < job.end; number += 1u) {
+        let map = maps[number];
+        let total = look(map, job, triangle, lane, true);
+        for (var i = lane; i < total; i += WORKGROUP) {
+            let sample = sample_of(map, i);
+            if sample.is_covered {
+                let address = claim();
+                if address < told.capacity {
+                    let next = atomicExchange(&heads[sample.pixel], address);
+                    nodes[address] = Link(key_at(sample), next);
+                }
             }
         }
+        workgroupBarrier();
     }
 }
 

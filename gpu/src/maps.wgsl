@@ -34,7 +34,8 @@ struct Told {
     low_x: i32,
     low_y: i32,
     low_z: i32,
-    unused: u32,
+    // Maps of a workgroup that draws triangles.
+    at_once: u32,
 }
 
 @group(0) @binding(0) var<uniform> told: Told;

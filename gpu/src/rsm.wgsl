@@ -157,6 +157,10 @@ fn block_rays(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
+    if lane == 0u {
+        atomicStore(&claimed, 0u);
+    }
+    workgroupBarrier();
     let at = item(id, groups);
     var asking = Asked(Ray(vec3(0.0), 1u, vec3(0.0), 0u), false);
     if at < parameters.items {

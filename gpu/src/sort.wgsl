@@ -30,6 +30,10 @@ var<workgroup> own_values: array<u32, LONG>;
 // A list for each invocation of a workgroup, all of which come along. The length of what is too
 // long goes to `unfinished`.
 fn sort_lists(list: u32, lists: u32, lane: u32) {
+    if lane == 0u {
+        atomicStore(&all_longs, 0u);
+    }
+    workgroupBarrier();
     if list < lists {
         let start = offsets[list];
         let length = offsets[list + 1u] - start;

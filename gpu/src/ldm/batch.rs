@@ -6,8 +6,8 @@ use triptych_spec::ldm::Maps;
 
 use super::Told;
 
-/// Pixels that an invocation looks at when 64 triangles are drawn into a map, at most: if all are as
-/// large as the map, as many as the map has. llvmpipe leaves every loop after 65,535 iterations.
+/// Pixels that an invocation looks at when 64 triangles are drawn into maps, at most: if all are as
+/// large as the map, as many as the maps have. llvmpipe leaves every loop after 65,535 iterations.
 const DRAWN: u32 = 60_000;
 
 /// Maps that are built at once.
@@ -79,7 +79,7 @@ impl Span {
 
     /// Dispatches that draw triangles, each into some rows of all maps.
     pub(super) fn drawn(&self, told: Told) -> impl Iterator<Item = Told> {
-        let rows = (DRAWN / self.width.max(1)).max(1);
+        let rows = (DRAWN / told.at_once.max(1) / self.width.max(1)).max(1);
         let told = self.told(told);
         let firsts = (0..self.height).step_by(rows as usize);
         firsts.map(move |first_row| Told {
