@@ -25,7 +25,9 @@
 //! | `rsm::adapters` | random scenes give the spec's decisions, and colours within bounds, on every adapter |
 //! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
 //! | `ldm::directions` | layered depth maps: equal areas, small diameters, no line twice, furnace; rotations |
-//! | `ldm::maps` | places; lists by brute force; even lists of closed meshes; crops; limits |
+//! | `ldm::places` | axes from their definition; where points are, within what rounding moves them |
+//! | `ldm::chains` | linked lists: the same keys; capacity; conservation |
+//! | `ldm::maps` | lists by brute force; even lists of closed meshes; limits |
 //! | `ldm::traces` | neighbours by brute force and in a stack; a point's own layers; borders |
 //! | `ldm::light` | furnace, walls, ceilings; exact rays as resolution grows; skies |
 //! | `ldm::loose` | whatever WGSL allows stays inside the bounds |

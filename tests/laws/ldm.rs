@@ -1,5 +1,7 @@
 //! Layered depth maps: directions, maps, what is seen through them.
 
+#[path = "ldm/chains.rs"]
+mod chains;
 #[path = "ldm/directions.rs"]
 mod directions;
 #[path = "ldm/light.rs"]
@@ -8,6 +10,8 @@ mod light;
 mod loose;
 #[path = "ldm/maps.rs"]
 mod maps;
+#[path = "ldm/places.rs"]
+mod places;
 #[path = "ldm/traces.rs"]
 mod traces;
 
@@ -25,6 +29,11 @@ fn around(vertices: &[Point]) -> [Point; 2] {
         [0, 1, 2].map(|i| vertices.iter().fold(start, |m, v| f(m, v[i])))
     };
     [end(i32::min, i32::MAX), end(i32::max, i32::MIN)]
+}
+
+/// The corners of a box.
+fn corners([low, high]: [Point; 2]) -> [Point; 8] {
+    std::array::from_fn(|n| [0, 1, 2].map(|i| if n >> i & 1 == 0 { low[i] } else { high[i] }))
 }
 
 /// Maps of a mesh in `count` directions, turned as in a frame.
@@ -56,6 +65,19 @@ fn coordinate() -> BoxedStrategy<i32> {
 
 fn point() -> BoxedStrategy<Point> {
     [coordinate(), coordinate(), coordinate()].boxed()
+}
+
+/// A few triangles, some without area, between a few points.
+fn mesh() -> impl Strategy<Value = Blockers> {
+    let rows = prop::collection::vec(any::<[prop::sample::Index; 3]>(), 1..9);
+    (prop::collection::vec(point(), 3..9), rows).prop_map(|(vertices, rows)| {
+        let row = |row: prop::sample::Index| u32::try_from(row.index(vertices.len())).unwrap();
+        let triangles = rows.into_iter().map(|t| t.map(row)).collect();
+        Blockers {
+            vertices,
+            triangles,
+        }
+    })
 }
 
 /// A direction of any.

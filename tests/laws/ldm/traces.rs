@@ -6,7 +6,7 @@ use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Maps, Receiver, Rotation, layers, neighbours};
 use triptych_spec::rsm::Face;
 
-use super::{around, direction, empty, maps_of, normal_of, point, quad, sphere};
+use super::{around, direction, empty, maps_of, mesh, normal_of, point, quad, sphere};
 use crate::config;
 
 /// Layers of a stack, by height.
@@ -138,14 +138,10 @@ proptest! {
     #[test]
     fn brute_force(
         direction in direction(),
-        vertices in prop::collection::vec(point(), 3..9),
-        rows in prop::collection::vec(any::<[prop::sample::Index; 3]>(), 1..9),
+        mesh in mesh(),
         asked in prop::collection::vec((point(), 0..3_u32, any::<prop::sample::Index>(), any::<bool>()), 1..6),
         resolution in 8..=24_u32,
     ) {
-        let row = |row: prop::sample::Index| u32::try_from(row.index(vertices.len())).unwrap();
-        let triangles: Vec<[u32; 3]> = rows.into_iter().map(|t| t.map(row)).collect();
-        let mesh = Blockers { vertices, triangles };
         let maps = Maps::new(&[direction], around(&mesh.vertices), resolution).unwrap();
         let map = &maps.maps[0];
         let layers = layers(&maps, &mesh).unwrap();
