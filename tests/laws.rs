@@ -28,7 +28,9 @@
 //! | `ldm::places` | axes from their definition; where points are, within what rounding moves them |
 //! | `ldm::chains` | linked lists: the same keys; capacity; conservation |
 //! | `ldm::maps` | lists by brute force; even lists of closed meshes; limits |
+//! | `ldm::crops` | maps cut to receivers are parts of whole ones, and find the same; extremes |
 //! | `ldm::traces` | neighbours by brute force and in a stack; a point's own layers; borders |
+//! | `ldm::bands` | a point's own layers: from the corners of pixels; bounds; ends |
 //! | `ldm::light` | furnace, walls, ceilings; exact rays as resolution grows; skies |
 //! | `ldm::loose` | whatever WGSL allows stays inside the bounds |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |

@@ -1,7 +1,11 @@
 //! Layered depth maps: directions, maps, what is seen through them.
 
+#[path = "ldm/bands.rs"]
+mod bands;
 #[path = "ldm/chains.rs"]
 mod chains;
+#[path = "ldm/crops.rs"]
+mod crops;
 #[path = "ldm/directions.rs"]
 mod directions;
 #[path = "ldm/light.rs"]
@@ -39,7 +43,13 @@ fn corners([low, high]: [Point; 2]) -> [Point; 8] {
 /// Maps of a mesh in `count` directions, turned as in a frame.
 fn maps_of(mesh: &Blockers, count: u32, resolution: u32, frame: u32) -> Maps {
     let set = rotated(&directions(count).expect("a set"), 7, frame);
-    Maps::new(&set, around(&mesh.vertices), resolution).expect("within the limits")
+    uncropped(&set, mesh, resolution)
+}
+
+/// Maps for receivers that may be anywhere in the mesh's box.
+fn uncropped(directions: &[[f64; 3]], mesh: &Blockers, resolution: u32) -> Maps {
+    let bounds = around(&mesh.vertices);
+    Maps::new(directions, bounds, bounds, resolution).expect("within the limits")
 }
 
 /// A quad at right angles to z, from corner to corner, as two triangles.

@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 use triptych_spec::abuffer::EOL;
 use triptych_spec::grid::Blockers;
-use triptych_spec::ldm::{Chains, LdmError, Maps, chain, layers};
+use triptych_spec::ldm::{Chains, LdmError, chain, layers};
 
-use super::{around, direction, mesh, quad};
+use super::{direction, mesh, quad, uncropped};
 use crate::config;
 
 /// Each entry is in one list, and in it once.
@@ -46,7 +46,7 @@ proptest! {
             // The same again: every key is there twice.
             mesh.triangles.extend(mesh.triangles.clone());
         }
-        let maps = Maps::new(&directions, around(&mesh.vertices), resolution).unwrap();
+        let maps = uncropped(&directions, &mesh, resolution);
         let layers = layers(&maps, &mesh).unwrap();
         let all = u32::try_from(layers.keys.len()).unwrap();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below all")]
@@ -76,7 +76,7 @@ fn what_comes_last_overflows() {
     for z in [7, 3, 5] {
         quad(&mut mesh, [-1_000_000; 2], [1_000_000; 2], z * 100_000);
     }
-    let maps = Maps::new(&[[0.0, 0.0, 1.0]], around(&mesh.vertices), 20).unwrap();
+    let maps = uncropped(&[[0.0, 0.0, 1.0]], &mesh, 20);
     let all = chain(&maps, &mesh, u32::MAX).unwrap();
     let two = chain(&maps, &mesh, all.attempts / 3 * 2).unwrap();
     assert_eq!([all.attempts, two.attempts % 3], [two.attempts, 0]);
@@ -99,6 +99,6 @@ fn a_corner_that_is_no_vertex_is_named() {
         vertices: vec![[-9; 3], [9; 3]],
         triangles: vec![[0, 1, 1], [1, 2, 0]],
     };
-    let maps = Maps::new(&[[0.0, 0.0, 1.0]], around(&mesh.vertices), 8).unwrap();
+    let maps = uncropped(&[[0.0, 0.0, 1.0]], &mesh, 8);
     assert_eq!(chain(&maps, &mesh, 9), Err(LdmError::Row(2)));
 }

@@ -6,7 +6,7 @@ use triptych_spec::ldm::{LdmError, Maps, RESOLUTION_MAX, layers};
 use triptych_spec::raster::{Setup, sample};
 use triptych_spec::vertex::Primitives;
 
-use super::{around, direction, empty, maps_of, mesh, quad, sphere};
+use super::{around, direction, empty, maps_of, mesh, quad, sphere, uncropped};
 use crate::config;
 
 proptest! {
@@ -19,7 +19,7 @@ proptest! {
         mesh in mesh(),
         resolution in 8..=32_u32,
     ) {
-        let maps = Maps::new(&directions, around(&mesh.vertices), resolution).unwrap();
+        let maps = uncropped(&directions, &mesh, resolution);
         let layers = layers(&maps, &mesh).unwrap();
         prop_assert_eq!(layers.offsets.len(), maps.pixels as usize + 1);
         prop_assert_eq!(*layers.offsets.last().unwrap() as usize, layers.keys.len());
@@ -76,7 +76,7 @@ fn maps_are_cropped() {
         5,
     );
     let bounds = around(&mesh.vertices);
-    let maps = Maps::new(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], bounds, 100).unwrap();
+    let maps = Maps::new(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], bounds, bounds, 100).unwrap();
     let sizes: Vec<[u32; 2]> = maps
         .maps
         .iter()
@@ -103,14 +103,14 @@ fn maps_are_cropped() {
 fn limits_are_named() {
     let bounds = [[-9; 3], [9; 3]];
     let error = |directions: &[[f64; 3]], resolution| {
-        Maps::new(directions, bounds, resolution)
+        Maps::new(directions, bounds, bounds, resolution)
             .unwrap_err()
             .to_string()
     };
     assert!(error(&[], 8).contains("the number of directions is 0"));
     assert!(error(&[[0.0, 0.0, 1.0]], 0).contains("the resolution is 0; 8 to 724"));
     assert!(error(&[[0.0, 0.0, 1.0]], 725).contains("724"));
-    let maps = Maps::new(&[[0.0, 0.0, 1.0]], bounds, 8).unwrap();
+    let maps = Maps::new(&[[0.0, 0.0, 1.0]], bounds, bounds, 8).unwrap();
     let mesh = Blockers {
         vertices: vec![[0; 3]],
         triangles: vec![[0, 0, 3]],
@@ -125,7 +125,7 @@ fn the_whole_lattice_fits() {
     let bounds = [[-end; 3], [end; 3]];
     let diagonal = [1.0 / 3.0_f64.sqrt(); 3];
     for resolution in [8, 25, 362, 363, RESOLUTION_MAX] {
-        let maps = Maps::new(&[diagonal, [0.0, 0.0, 1.0]], bounds, resolution).unwrap();
+        let maps = Maps::new(&[diagonal, [0.0, 0.0, 1.0]], bounds, bounds, resolution).unwrap();
         for map in &maps.maps {
             let far = maps.place(map, [end, end, end]);
             let near = maps.place(map, [-end, -end, -end]);

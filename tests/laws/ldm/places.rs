@@ -14,7 +14,7 @@ const FLOATS: f64 = 1.0 / 70_368_744_177_664.0;
 /// Unit vectors along columns, rows, and to the viewer, from what they are: the axes of space
 /// turned the shortest way that takes the nearer pole of z to the direction (rotation about an
 /// axis by Rodrigues); with z turned around y is too, so that they stay right-handed.
-fn axes([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
+pub(super) fn axes([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     let pole = if z < 0.0 { -1.0 } else { 1.0 };
     let (sin, cos) = (x.hypot(y), z.abs());
     let about = match sin > 0.0 {
@@ -29,7 +29,7 @@ fn axes([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     [[1.0, 0.0, 0.0], [0.0, pole, 0.0], [0.0, 0.0, pole]].map(turned)
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
@@ -115,7 +115,7 @@ proptest! {
         resolution in resolution(),
     ) {
         let bounds = around(&points);
-        let maps = Maps::new(&directions, bounds, resolution).unwrap();
+        let maps = Maps::new(&directions, bounds, bounds, resolution).unwrap();
         let units = units(bounds, resolution, maps.bits);
         prop_assert!((f64::from(1 << maps.bits) / maps.pixel / units[0] - 1.0).abs() < FLOATS);
         let mut first = 0;
