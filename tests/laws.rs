@@ -32,6 +32,8 @@
 //! | `ldm::traces` | neighbours by brute force and in a stack; a point's own layers; borders |
 //! | `ldm::bands` | a point's own layers: from the corners of pixels; bounds; ends |
 //! | `ldm::light` | furnace, walls, ceilings; exact rays as resolution grows; skies |
+//! | `ldm::frames` | frames together are their sum, and fit; the more, the nearer to what is exact |
+//! | `ldm::symmetry` | everything turned together; directions and their opposites |
 //! | `ldm::loose` | whatever WGSL allows stays inside the bounds |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!

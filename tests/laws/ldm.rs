@@ -8,6 +8,8 @@ mod chains;
 mod crops;
 #[path = "ldm/directions.rs"]
 mod directions;
+#[path = "ldm/frames.rs"]
+mod frames;
 #[path = "ldm/light.rs"]
 mod light;
 #[path = "ldm/loose.rs"]
@@ -16,6 +18,8 @@ mod loose;
 mod maps;
 #[path = "ldm/places.rs"]
 mod places;
+#[path = "ldm/symmetry.rs"]
+mod symmetry;
 #[path = "ldm/traces.rs"]
 mod traces;
 

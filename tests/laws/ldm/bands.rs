@@ -1,6 +1,7 @@
 //! A point's own layers: how far their keys may be from its own.
 
 use proptest::prelude::*;
+use proptest::test_runner::Config;
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm::{
@@ -47,7 +48,7 @@ fn nudged(maps: &Maps, point: Point, up: [bool; 2]) -> Point {
 }
 
 proptest! {
-    #![proptest_config(config(600))]
+    #![proptest_config(Config { max_global_rejects: u32::MAX, ..config(1000) })]
 
     /// Nothing that lies on a triangle sees it from the very corner of a pixel, which is as far
     /// from its middle as can be; corners of triangles are rounded against that, too.

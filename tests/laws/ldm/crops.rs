@@ -83,9 +83,8 @@ fn check_part(
         if sides == [0; 2] {
             continue;
         }
-        for axis in 0..2 {
-            prop_assert_eq!(p.origin[axis], w.origin[axis] + (begin[axis] << whole.bits));
-        }
+        let origin = [0, 1].map(|axis| w.origin[axis] + (begin[axis] << whole.bits));
+        prop_assert_eq!([p.origin[0], p.origin[1]], origin);
         let [column, row] = begin.map(i32::cast_unsigned);
         for (y, x) in (0..p.size.height).flat_map(|y| (0..p.size.width).map(move |x| (y, x))) {
             let own = p.first + y * p.size.width + x;
@@ -191,7 +190,7 @@ fn largest_edge(maps: &Maps, map: &Map, places: &[Point; 8]) -> i64 {
     for [px, py] in pixels {
         let from = places.map(|[x, y, _]| [i64::from(x) - px, i64::from(y) - py]);
         for [ax, ay] in from {
-            assert!(ax.abs() < 1 << 16 && ay.abs() < 1 << 16);
+            assert!(ax.abs().max(ay.abs()) < 1 << 16, "{ax} {ay}");
             most = from
                 .iter()
                 .fold(most, |m, [bx, by]| m.max((ax * by - ay * bx).abs()));
