@@ -163,8 +163,9 @@ fn edges_fit_beyond_a_crop() {
     set.extend((1..60).map(|n| Rotation::of(3, n).turn([0.0, 0.0, 1.0])));
     let cube = [[-end; 3], [end; 3]];
     let square = [[-end, -end, 0], [end, end, 0]];
+    let line = [[-end, 0, 0], [end, 0, 0]];
     let mut most = 0;
-    for (scene, resolution) in [cube, square]
+    for (scene, resolution) in [cube, square, line]
         .into_iter()
         .flat_map(|s| [8, 25, 362, 363, 724].map(|r| (s, r)))
     {
@@ -186,6 +187,11 @@ fn edges_fit_beyond_a_crop() {
 fn largest_edge(maps: &Maps, map: &Map, places: &[Point; 8]) -> i64 {
     let ends = [map.size.width, map.size.height].map(|n| [0, n - 1].map(|n| sample(n, maps.bits)));
     let pixels = (0..4).map(|n| [ends[0][n & 1], ends[1][n >> 1]]);
+    for axis in 0..2 {
+        let along = places.map(|place| place[axis]);
+        let wide = along.iter().max().unwrap() - along.iter().min().unwrap();
+        assert!(wide <= 46_338, "products of their differences: {wide}");
+    }
     let mut most = 0;
     for [px, py] in pixels {
         let from = places.map(|[x, y, _]| [i64::from(x) - px, i64::from(y) - py]);
