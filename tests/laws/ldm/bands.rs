@@ -6,7 +6,7 @@ use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm::{
     Hits, KEYS_PER_STEP, Layers, Map, Maps, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN, Receiver,
-    layers, neighbours, own_band,
+    Rotation, layers, neighbours, own_band,
 };
 use triptych_spec::rsm::Face;
 
@@ -136,6 +136,34 @@ proptest! {
         let most = most + steepest * (half + 1.0) * (1.0 + 1.0 / 32_768.0) + 1.0;
         prop_assert!(band >= least.min(largest), "{} < {}", band, least);
         prop_assert!(band <= most.min(largest + 4_000.0), "{} > {}", band, most);
+    }
+}
+
+/// However normals and axes are rounded, a band is no narrower than its surface's slope needs:
+/// where surfaces are nearly level, slopes have the fewest digits.
+#[test]
+fn rounded_normals_do_not_narrow_a_band() {
+    let turned = |seed: u64, n: u32, v: [f64; 3]| Rotation::of(seed, n).turn(v);
+    let set: Vec<[f64; 3]> = (1..200).map(|n| turned(8, n, [0.0, 0.0, 1.0])).collect();
+    let bounds = [[-8_000_000; 3], [8_000_000; 3]];
+    let maps = Maps::new(&set, bounds, bounds, RESOLUTION_MIN).unwrap();
+    let half = maps.pixel * f64::from(KEYS_PER_STEP) * (0.5 + 1.0 / 128.0);
+    for (map, direction) in maps.maps.iter().zip(&set) {
+        let axes = axes(*direction);
+        for n in 0..500 {
+            let aside = turned(9, n, [0.0, 0.3, 0.0]);
+            let normal = [0, 1, 2].map(|i| direction[i] + aside[i]);
+            let long = dot(normal, normal).sqrt();
+            let normal = normal.map(|c| c / long);
+            let receiver = Receiver {
+                point: [0; 3],
+                normal: normal.map(|c| whole(16_384.0 * c)),
+                off: 0,
+            };
+            let [x, y, z] = axes.map(|axis| dot(axis, normal).abs());
+            let band = f64::from(own_band(&maps, map, &receiver));
+            assert!(band >= (x + y) / z * half, "{band} {normal:?} {map:?}");
+        }
     }
 }
 
