@@ -25,9 +25,15 @@
 //! | `rsm::adapters` | random scenes give the spec's decisions, and colours within bounds, on every adapter |
 //! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
 //! | `ldm::directions` | layered depth maps: equal areas, small diameters, no line twice, furnace; rotations |
-//! | `ldm::maps` | places; lists by brute force; even lists of closed meshes; crops; limits |
+//! | `ldm::places` | axes from their definition; where points are, within what rounding moves them |
+//! | `ldm::chains` | linked lists: the same keys; capacity; conservation |
+//! | `ldm::maps` | lists by brute force; even lists of closed meshes; limits |
+//! | `ldm::crops` | maps cut to receivers are parts of whole ones, and find the same; extremes |
 //! | `ldm::traces` | neighbours by brute force and in a stack; a point's own layers; borders |
+//! | `ldm::bands` | a point's own layers: from the corners of pixels; bounds; ends |
 //! | `ldm::light` | furnace, walls, ceilings; exact rays as resolution grows; skies |
+//! | `ldm::frames` | frames together are their sum, and fit; the more, the nearer to what is exact |
+//! | `ldm::symmetry` | everything turned together; directions and their opposites |
 //! | `ldm::loose` | whatever WGSL allows stays inside the bounds |
 //! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
 //!

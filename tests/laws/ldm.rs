@@ -2,14 +2,26 @@
 
 #[path = "ldm/adapters.rs"]
 mod adapters;
+#[path = "ldm/bands.rs"]
+mod bands;
+#[path = "ldm/chains.rs"]
+mod chains;
+#[path = "ldm/crops.rs"]
+mod crops;
 #[path = "ldm/directions.rs"]
 mod directions;
+#[path = "ldm/frames.rs"]
+mod frames;
 #[path = "ldm/light.rs"]
 mod light;
 #[path = "ldm/loose.rs"]
 mod loose;
 #[path = "ldm/maps.rs"]
 mod maps;
+#[path = "ldm/places.rs"]
+mod places;
+#[path = "ldm/symmetry.rs"]
+mod symmetry;
 #[path = "ldm/traces.rs"]
 mod traces;
 
@@ -29,10 +41,21 @@ fn around(vertices: &[Point]) -> [Point; 2] {
     [end(i32::min, i32::MAX), end(i32::max, i32::MIN)]
 }
 
+/// The corners of a box.
+fn corners([low, high]: [Point; 2]) -> [Point; 8] {
+    std::array::from_fn(|n| [0, 1, 2].map(|i| if n >> i & 1 == 0 { low[i] } else { high[i] }))
+}
+
 /// Maps of a mesh in `count` directions, turned as in a frame.
 fn maps_of(mesh: &Blockers, count: u32, resolution: u32, frame: u32) -> Maps {
     let set = rotated(&directions(count).expect("a set"), 7, frame);
-    Maps::new(&set, around(&mesh.vertices), resolution).expect("within the limits")
+    uncropped(&set, mesh, resolution)
+}
+
+/// Maps for receivers that may be anywhere in the mesh's box.
+fn uncropped(directions: &[[f64; 3]], mesh: &Blockers, resolution: u32) -> Maps {
+    let bounds = around(&mesh.vertices);
+    Maps::new(directions, bounds, bounds, resolution).expect("within the limits")
 }
 
 /// A quad at right angles to z, from corner to corner, as two triangles.
@@ -58,6 +81,19 @@ fn coordinate() -> BoxedStrategy<i32> {
 
 fn point() -> BoxedStrategy<Point> {
     [coordinate(), coordinate(), coordinate()].boxed()
+}
+
+/// A few triangles, some without area, between a few points.
+fn mesh() -> impl Strategy<Value = Blockers> {
+    let rows = prop::collection::vec(any::<[prop::sample::Index; 3]>(), 1..9);
+    (prop::collection::vec(point(), 3..9), rows).prop_map(|(vertices, rows)| {
+        let row = |row: prop::sample::Index| u32::try_from(row.index(vertices.len())).unwrap();
+        let triangles = rows.into_iter().map(|t| t.map(row)).collect();
+        Blockers {
+            vertices,
+            triangles,
+        }
+    })
 }
 
 /// A direction of any.

@@ -7,11 +7,22 @@ use crate::scene::Size;
 /// Fewest pixels across the scene: half of one is then below 2^24 keys, see [`Maps::half`].
 pub const RESOLUTION_MIN: u32 = 8;
 
-/// Most pixels across the scene: with 6 sub-pixel bits an edge function is at most
-/// `(724 * 64)^2 < 2^31`.
+/// Most pixels across the scene, with 6 sub-pixel bits: 724 * 64 = 46,336 sub-pixels, so that
+/// edge functions fit in 31 bits and a sign, at every pixel that the scene has, covered or not.
+///
+/// A vertex is at most `r` = 23,169 sub-pixels, half of those and what rounding adds, from where
+/// the middle of the scene's box is. The middle of a pixel is as far along either axis, or half a
+/// pixel farther (64): at most `R` = 32,857 away in all. An edge function at a point is linear
+/// in each end of its edge, so it is largest with both ends on the circle: seen under an angle of
+/// `2 a`, they are `2 r sin a` apart, and the point is at most `R + r cos a` from their line. The
+/// product is below 1.80e9 < 2^31 for all `a`. Differences of coordinates are below 2^16. Where a
+/// pixel's middle is within the triangle's own rectangle each of an edge function's two products
+/// is below 46,338^2 < 2^31; elsewhere one may be beyond, but wraps around to the right sum.
+///
+/// A crop takes pixels away and moves no vertex, so the same holds for what reaches beyond it.
 pub const RESOLUTION_MAX: u32 = 724;
 
-/// Most pixels with 7 sub-pixel bits, for the same reason: `(362 * 128)^2 < 2^31`.
+/// Most pixels with 7 sub-pixel bits, for the same reason: 362 * 128 = 46,336.
 const FINE_MAX: u32 = 362;
 
 /// Depth keys of a step of the lattice.
@@ -39,7 +50,7 @@ pub struct Map {
     pub planes: [Point; 3],
     /// The sub-pixels where pixel (0, 0) begins, and the least key.
     pub origin: Point,
-    /// Pixels that the scene's box covers.
+    /// Pixels that both the scene's box and that of receivers cover; 0 by 0 if there are none.
     pub size: Size,
     /// Number of the first pixel among those of all maps.
     pub first: u32,
@@ -66,8 +77,14 @@ pub struct Maps {
 }
 
 impl Maps {
-    /// Maps of a box, `low` to `high`, with as many pixels across its diagonal as `resolution`
-    /// says, but no more than one for 128 steps. Each map is cropped to what the box covers.
+    /// Maps of all that is in the box `scene`, for points in the box `receivers`; each is the
+    /// least and the greatest coordinates. There are as many pixels across the scene's diagonal as
+    /// `resolution` says, but no more than one for 128 steps.
+    ///
+    /// Each map is cropped to the pixels that both boxes cover. What borders they have, and keys,
+    /// depend on the scene alone: a cropped map is a part of the whole one, and a receiver in its
+    /// box finds the same in both. Receivers may be outside of the scene, where all is open; a map
+    /// that none can look up has no pixels. Blockers must be in the scene's box.
     ///
     /// The axes of a map are its direction and two of the basis by Duff et al. (2017), which has
     /// no pole. They are rounded to integers here, once: every leg starts from them.
@@ -76,7 +93,8 @@ impl Maps {
     /// No direction or too many, a resolution beyond its limits.
     pub fn new(
         directions: &[[f64; 3]],
-        [low, high]: [Point; 2],
+        scene: [Point; 2],
+        receivers: [Point; 2],
         resolution: u32,
     ) -> Result<Self, LdmError> {
         let count = directions.len() as u64;
@@ -85,7 +103,7 @@ impl Maps {
         let (least, most) = (RESOLUTION_MIN.into(), RESOLUTION_MAX.into());
         within("the resolution", resolution.into(), least, most)?;
         let bits = if resolution <= FINE_MAX { 7 } else { 6 };
-        let pixel = (diagonal(low, high) / f64::from(resolution)).max(PIXEL_MIN);
+        let pixel = (diagonal(scene) / f64::from(resolution)).max(PIXEL_MIN);
         let scale = f64::from(1_u32 << bits) / pixel;
         // The largest power of two with which no component exceeds 2^30.
         let exponent = ROW_BITS - libm::frexp(scale).1;
@@ -100,26 +118,27 @@ impl Maps {
             pixels: 0,
         };
         for direction in directions {
-            let map = all.map(*direction, [low, high], libm::scalbn(scale, exponent));
-            // 4096 maps of at most 725 x 725 pixels: fewer than 2^32.
+            let mut map = all.map(*direction, libm::scalbn(scale, exponent));
+            all.crop(&mut map, scene, receivers);
+            // 4096 maps of at most 726 x 726 pixels: fewer than 2^32.
             all.pixels += map.size.width * map.size.height;
             all.maps.push(map);
         }
         Ok(all)
     }
 
-    fn map(&self, direction: [f64; 3], [low, high]: [Point; 2], scale: f64) -> Map {
+    /// A map that has no pixels yet, and begins where the lattice does.
+    fn map(&self, direction: [f64; 3], scale: f64) -> Map {
         let axes = basis(direction);
         let depth = f64::from(1 << ROW_BITS);
-        let rows = [
-            axes[0].map(|c| rounded(c * scale)),
-            axes[1].map(|c| rounded(c * scale)),
-            // Depth grows away from the viewer.
-            axes[2].map(|c| rounded(-c * depth)),
-        ];
-        let mut map = Map {
+        Map {
             direction,
-            rows,
+            rows: [
+                axes[0].map(|c| rounded(c * scale)),
+                axes[1].map(|c| rounded(c * scale)),
+                // Depth grows away from the viewer.
+                axes[2].map(|c| rounded(-c * depth)),
+            ],
             planes: axes.map(|axis| axis.map(|c| rounded(c * f64::from(1 << PLANE_BITS)))),
             origin: [0; 3],
             size: Size {
@@ -127,26 +146,39 @@ impl Maps {
                 height: 0,
             },
             first: self.pixels,
-        };
+        }
+    }
+
+    /// Gives a map the pixels that both boxes cover, and the scene's least key.
+    fn crop(&self, map: &mut Map, scene: [Point; 2], receivers: [Point; 2]) {
+        let [scene, receivers] = [scene, receivers].map(|bounds| self.extent(map, bounds));
+        let begin = [0, 1].map(|axis| scene[0][axis].max(receivers[0][axis]) >> self.bits);
+        let end = [0, 1].map(|axis| (scene[1][axis].min(receivers[1][axis]) >> self.bits) + 1);
+        map.origin = [begin[0] << self.bits, begin[1] << self.bits, scene[0][2]];
+        if (0..2).all(|axis| begin[axis] < end[axis]) {
+            let [width, height] = [0, 1].map(|axis| (end[axis] - begin[axis]).unsigned_abs());
+            map.size = Size { width, height };
+        }
+    }
+
+    /// The least and the greatest places of a box, which are those of corners: a place never
+    /// falls where a coordinate's part in it grows.
+    fn extent(&self, map: &Map, [low, high]: [Point; 2]) -> [Point; 2] {
         let corners =
             (0..8).map(|n| [0, 1, 2].map(|i| if n >> i & 1 == 0 { low[i] } else { high[i] }));
-        let places: Vec<Point> = corners.map(|corner| self.place(&map, corner)).collect();
-        let least = |axis: usize| places.iter().map(|p| p[axis]).min().unwrap_or(0);
-        let most = |axis: usize| places.iter().map(|p| p[axis]).max().unwrap_or(0);
-        let begin = [0, 1].map(|axis| least(axis) >> self.bits);
-        let pixels =
-            [0, 1].map(|axis| ((most(axis) >> self.bits) - begin[axis] + 1).unsigned_abs());
-        map.origin = [begin[0] << self.bits, begin[1] << self.bits, least(2)];
-        map.size = Size {
-            width: pixels[0],
-            height: pixels[1],
-        };
-        map
+        let places = corners.map(|corner| self.place(map, corner));
+        places.fold([[i32::MAX; 3], [i32::MIN; 3]], |[least, most], place| {
+            [
+                [0, 1, 2].map(|axis| least[axis].min(place[axis])),
+                [0, 1, 2].map(|axis| most[axis].max(place[axis])),
+            ]
+        })
     }
 
     /// Where a point of the lattice is in a map: column and row in sub-pixels from its corner,
     /// and its key. Exact: a dot product is below 2^54, and halves are rounded up when it is
-    /// shifted down. A point of the box is in the map, with a key from 0 to 2^28.
+    /// shifted down. A point in the boxes of both scene and receivers is in the map; one in the
+    /// scene's has a key from 0 to 2^28.
     pub fn place(&self, map: &Map, point: Point) -> Point {
         let shifts = [self.shifts[0], self.shifts[0], self.shifts[1]];
         [0, 1, 2].map(|axis| {
@@ -163,7 +195,7 @@ impl Maps {
 /// By how much a dot product with the row of depth is shifted down.
 const DEPTH_SHIFT: u32 = 27;
 
-fn diagonal(low: Point, high: Point) -> f64 {
+fn diagonal([low, high]: [Point; 2]) -> f64 {
     let side = |i: usize| f64::from(high[i]) - f64::from(low[i]);
     libm::sqrt((0..3).map(|i| side(i) * side(i)).sum())
 }

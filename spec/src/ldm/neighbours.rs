@@ -31,9 +31,9 @@ pub struct Hits {
 /// find the point's own layers, take the neighbours.
 ///
 /// Layers whose keys are within [`own_band`] of the point's are its own surface's. A point
-/// beside the map sees nothing, as there is nothing: the map covers the whole scene. The list
-/// that it finds is that of the pixel it is in, `[x, x + 1)` of each side, whatever the distance
-/// from the pixel's middle.
+/// beside the map sees nothing: of those that the map is for ([`Maps::new`]), only what is beside
+/// the scene is beside it, where there is nothing. The list that it finds is that of the pixel it
+/// is in, `[x, x + 1)` of each side, whatever the distance from the pixel's middle.
 pub fn neighbours(maps: &Maps, map: &Map, layers: &Layers, receiver: &Receiver) -> Hits {
     let [x, y, key] = maps.place(map, receiver.point);
     let mut hits = Hits {

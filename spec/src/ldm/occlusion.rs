@@ -35,7 +35,8 @@ pub struct Open {
 
 /// The weight of a map for a surface with this coarse normal: the cosine between them with
 /// [`WEIGHT_BITS`] bits, rounded down, negative if the surface faces away from the map's viewer.
-/// At most 2^19 in size, so 4096 of them fit in 32 bits.
+/// At most 2^19 + 55 in size, as both vectors may be `sqrt(3) / 2` longer than 2^14; so
+/// [`super::DIRECTIONS_MAX`] of them fit in 32 bits, whatever frames they are of.
 pub fn weight(map: &Map, normal: Point) -> i32 {
     let cosine = dot(map.planes[2], normal);
     cosine.signum() * (cosine.abs() >> (2 * super::PLANE_BITS - WEIGHT_BITS))

@@ -192,10 +192,13 @@ proptest! {
         receivers in prop::collection::vec(receiver(), 1..70),
         resolution in 8..=48_u32,
         part in 1..=4_u64,
+        cropped in any::<bool>(),
     ) {
         let receiving = receivers.iter().map(|r| r.point);
         let points: Vec<_> = mesh.vertices.iter().copied().chain(receiving).collect();
-        let maps = Maps::new(&directions, around(&points), resolution).unwrap();
+        let asking: Vec<_> = receivers.iter().map(|r| r.point).collect();
+        let crop = around(if cropped { &asking } else { &points });
+        let maps = Maps::new(&directions, around(&points), crop, resolution).unwrap();
         let made = layers(&maps, &mesh).unwrap();
         let sizes = maps.maps.iter().map(|m| (m.first, m.first + m.size.width * m.size.height));
         let most = sizes.map(|(first, end)| {

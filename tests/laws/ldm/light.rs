@@ -125,7 +125,7 @@ fn a_wall_takes_a_half() {
 }
 
 /// A ball over a floor, and points around it.
-fn ball() -> (Blockers, Vec<Receiver>) {
+pub(super) fn ball() -> (Blockers, Vec<Receiver>) {
     let (mut mesh, floor) = floor();
     let first = u32::try_from(mesh.vertices.len()).unwrap();
     let ball = sphere([1_000_000.0; 3], 24, 16);

@@ -13,7 +13,8 @@ use crate::loose::Loose;
 
 /// Maps in any directions, of which only those matter.
 fn maps(directions: &[[f64; 3]]) -> Maps {
-    Maps::new(directions, [[-9; 3], [9; 3]], 8).expect("within the limits")
+    let bounds = [[-9; 3], [9; 3]];
+    Maps::new(directions, bounds, bounds, 8).expect("within the limits")
 }
 
 fn scale(m: &mut Loose, count: usize) -> f32 {

@@ -1,70 +1,25 @@
-//! Maps: where points are in them, and which keys their lists hold.
+//! Maps: which keys their lists hold, and what makes none.
 
 use proptest::prelude::*;
 use triptych_spec::grid::Blockers;
-use triptych_spec::ldm::{KEYS_PER_STEP, LdmError, Maps, RESOLUTION_MAX, layers};
+use triptych_spec::ldm::{LdmError, Maps, RESOLUTION_MAX, layers};
 use triptych_spec::raster::{Setup, sample};
 use triptych_spec::vertex::Primitives;
 
-use super::{around, direction, empty, maps_of, point, quad, sphere};
+use super::{around, direction, empty, maps_of, mesh, quad, sphere, uncropped};
 use crate::config;
 
 proptest! {
     #![proptest_config(config(2000))]
 
-    /// A point is where its projection is, within what rounding moves it; points of the box are
-    /// in the map.
-    #[test]
-    fn places(
-        directions in prop::collection::vec(direction(), 1..4),
-        points in prop::collection::vec(point(), 1..12),
-        resolution in prop_oneof![8..=64_u32, 300..=RESOLUTION_MAX],
-    ) {
-        let maps = Maps::new(&directions, around(&points), resolution).unwrap();
-        let mut first = 0;
-        for map in &maps.maps {
-            prop_assert_eq!(map.first, first);
-            first += map.size.width * map.size.height;
-            let ends = [map.size.width, map.size.height].map(|n| (n << maps.bits).cast_signed());
-            let origin = maps.place(map, [0; 3]);
-            for p in &points {
-                let place = maps.place(map, *p);
-                prop_assert!((0..2).all(|i| (0..ends[i]).contains(&place[i])), "{:?} of {:?}", place, ends);
-                prop_assert!(place[2] >= 0);
-                // Rows are rounded by half in the last of 30 bits, places by half.
-                let long: f64 = p.iter().map(|c| f64::from(c.abs())).sum();
-                let along = |axis: usize| -> f64 {
-                    (0..3).map(|i| f64::from(map.planes[axis][i]) / 16_384.0 * f64::from(p[i])).sum()
-                };
-                let scale = f64::from(1 << maps.bits) / maps.pixel;
-                // The planes are coarser than the rows: half in 2^14.
-                let exact = [along(0) * scale, along(1) * scale, -along(2) * f64::from(KEYS_PER_STEP)];
-                for axis in 0..3 {
-                    let unit = if axis < 2 { scale } else { f64::from(KEYS_PER_STEP) };
-                    let off = f64::from(place[axis] - origin[axis]) - exact[axis];
-                    prop_assert!(off.abs() <= 1.01 + unit * long / 32_767.0, "{}: {} {}", axis, off, long);
-                }
-                let depth: f64 = (0..3).map(|i| map.direction[i] * f64::from(p[i])).sum();
-                let key = -depth * f64::from(KEYS_PER_STEP);
-                let off = f64::from(place[2] - origin[2]) - key;
-                prop_assert!(off.abs() <= 1.01 + 8.0 * long / 1_073_741_824.0 + 1e-6 * long * 1e-3, "{} {}", off, long);
-            }
-        }
-        prop_assert_eq!(maps.pixels, first);
-    }
-
     /// A list holds what covers the middle of its pixel, and rises.
     #[test]
     fn lists(
         directions in prop::collection::vec(direction(), 1..3),
-        vertices in prop::collection::vec(point(), 3..9),
-        rows in prop::collection::vec(any::<[prop::sample::Index; 3]>(), 0..9),
+        mesh in mesh(),
         resolution in 8..=32_u32,
     ) {
-        let row = |row: prop::sample::Index| u32::try_from(row.index(vertices.len())).unwrap();
-        let triangles = rows.into_iter().map(|t| t.map(row)).collect();
-        let mesh = Blockers { vertices, triangles };
-        let maps = Maps::new(&directions, around(&mesh.vertices), resolution).unwrap();
+        let maps = uncropped(&directions, &mesh, resolution);
         let layers = layers(&maps, &mesh).unwrap();
         prop_assert_eq!(layers.offsets.len(), maps.pixels as usize + 1);
         prop_assert_eq!(*layers.offsets.last().unwrap() as usize, layers.keys.len());
@@ -121,7 +76,7 @@ fn maps_are_cropped() {
         5,
     );
     let bounds = around(&mesh.vertices);
-    let maps = Maps::new(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], bounds, 100).unwrap();
+    let maps = Maps::new(&[[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], bounds, bounds, 100).unwrap();
     let sizes: Vec<[u32; 2]> = maps
         .maps
         .iter()
@@ -148,14 +103,14 @@ fn maps_are_cropped() {
 fn limits_are_named() {
     let bounds = [[-9; 3], [9; 3]];
     let error = |directions: &[[f64; 3]], resolution| {
-        Maps::new(directions, bounds, resolution)
+        Maps::new(directions, bounds, bounds, resolution)
             .unwrap_err()
             .to_string()
     };
     assert!(error(&[], 8).contains("the number of directions is 0"));
     assert!(error(&[[0.0, 0.0, 1.0]], 0).contains("the resolution is 0; 8 to 724"));
     assert!(error(&[[0.0, 0.0, 1.0]], 725).contains("724"));
-    let maps = Maps::new(&[[0.0, 0.0, 1.0]], bounds, 8).unwrap();
+    let maps = Maps::new(&[[0.0, 0.0, 1.0]], bounds, bounds, 8).unwrap();
     let mesh = Blockers {
         vertices: vec![[0; 3]],
         triangles: vec![[0, 0, 3]],
@@ -170,7 +125,7 @@ fn the_whole_lattice_fits() {
     let bounds = [[-end; 3], [end; 3]];
     let diagonal = [1.0 / 3.0_f64.sqrt(); 3];
     for resolution in [8, 25, 362, 363, RESOLUTION_MAX] {
-        let maps = Maps::new(&[diagonal, [0.0, 0.0, 1.0]], bounds, resolution).unwrap();
+        let maps = Maps::new(&[diagonal, [0.0, 0.0, 1.0]], bounds, bounds, resolution).unwrap();
         for map in &maps.maps {
             let far = maps.place(map, [end, end, end]);
             let near = maps.place(map, [-end, -end, -end]);

@@ -3,10 +3,10 @@
 use proptest::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::Point;
-use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Maps, Receiver, Rotation, layers, neighbours};
+use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Receiver, Rotation, layers, neighbours};
 use triptych_spec::rsm::Face;
 
-use super::{around, direction, empty, maps_of, normal_of, point, quad, sphere};
+use super::{direction, empty, maps_of, mesh, normal_of, point, quad, sphere, uncropped};
 use crate::config;
 
 /// Layers of a stack, by height.
@@ -26,7 +26,7 @@ fn stack() -> Blockers {
 fn layers_see_their_neighbours() {
     let mesh = stack();
     for (z, up) in [(1.0, 1), (-1.0, -1)] {
-        let maps = Maps::new(&[[0.0, 0.0, z]], around(&mesh.vertices), 40).unwrap();
+        let maps = uncropped(&[[0.0, 0.0, z]], &mesh, 40);
         let layers = layers(&maps, &mesh).unwrap();
         let at = |height: i32, normal: i32, off: u32| {
             let receiver = Receiver {
@@ -71,7 +71,7 @@ fn what_is_within_half_a_pixels_slope_is_the_points_own() {
     for (gap, seen) in [(1_000, false), (400_000, true)] {
         let mut two = mesh.clone();
         quad(&mut two, [-4_000_000; 2], [4_000_000; 2], gap);
-        let maps = Maps::new(&[[side, 0.0, side]], around(&two.vertices), 64).unwrap();
+        let maps = uncropped(&[[side, 0.0, side]], &two, 64);
         assert!(f64::from(gap) < maps.pixel * 0.3 || f64::from(gap) > maps.pixel * 1.5);
         let layers = layers(&maps, &two).unwrap();
         let mut found = 0;
@@ -97,7 +97,7 @@ fn what_is_within_half_a_pixels_slope_is_the_points_own() {
 #[test]
 fn beside_the_map_is_nothing() {
     let mesh = stack();
-    let maps = Maps::new(&[[0.0, 0.0, 1.0]], around(&mesh.vertices), 40).unwrap();
+    let maps = uncropped(&[[0.0, 0.0, 1.0]], &mesh, 40);
     let layers = layers(&maps, &mesh).unwrap();
     let map = &maps.maps[0];
     let hits = |point| {
@@ -138,15 +138,11 @@ proptest! {
     #[test]
     fn brute_force(
         direction in direction(),
-        vertices in prop::collection::vec(point(), 3..9),
-        rows in prop::collection::vec(any::<[prop::sample::Index; 3]>(), 1..9),
+        mesh in mesh(),
         asked in prop::collection::vec((point(), 0..3_u32, any::<prop::sample::Index>(), any::<bool>()), 1..6),
         resolution in 8..=24_u32,
     ) {
-        let row = |row: prop::sample::Index| u32::try_from(row.index(vertices.len())).unwrap();
-        let triangles: Vec<[u32; 3]> = rows.into_iter().map(|t| t.map(row)).collect();
-        let mesh = Blockers { vertices, triangles };
-        let maps = Maps::new(&[direction], around(&mesh.vertices), resolution).unwrap();
+        let maps = uncropped(&[direction], &mesh, resolution);
         let map = &maps.maps[0];
         let layers = layers(&maps, &mesh).unwrap();
         for (point, off, triangle, on) in asked {
@@ -189,7 +185,7 @@ proptest! {
     ) {
         let face = Face::new(corners);
         let mesh = Blockers { vertices: corners.to_vec(), triangles: vec![[0, 1, 2]] };
-        let maps = Maps::new(&[direction], around(&mesh.vertices), resolution).unwrap();
+        let maps = uncropped(&[direction], &mesh, resolution);
         let layers = layers(&maps, &mesh).unwrap();
         let map = &maps.maps[0];
         let facing: f64 = (0..3).map(|i| f64::from(face.unit[i]) * direction[i]).sum();
@@ -209,12 +205,12 @@ proptest! {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "within the lattice")]
-fn whole(x: f64) -> i32 {
+pub(super) fn whole(x: f64) -> i32 {
     x.round() as i32
 }
 
 /// A triangle that is no sliver, anywhere, and its height over its longest side, or less.
-fn triangle() -> impl Strategy<Value = ([Point; 3], f64)> {
+pub(super) fn triangle() -> impl Strategy<Value = ([Point; 3], f64)> {
     let sides = [2e5..4e6_f64, 2e5..4e6];
     (any::<u64>(), sides, 0.6..2.5_f64, point()).prop_map(|(seed, [a, b], angle, from)| {
         let rotation = Rotation::of(seed, 1);

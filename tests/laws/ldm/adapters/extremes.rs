@@ -5,6 +5,11 @@ use triptych_spec::ldm::RESOLUTION_MAX;
 
 use super::*;
 
+fn maps_around(mesh: &Blockers, sets: &[[f64; 3]], resolution: u32) -> Maps {
+    let bounds = around(&mesh.vertices);
+    Maps::new(sets, bounds, bounds, resolution).expect("within the limits")
+}
+
 fn longest(maps: &Maps, made: &Layers) -> usize {
     let all = (0..maps.pixels).map(|pixel| made.list(pixel).len());
     all.max().unwrap_or(0)
@@ -26,7 +31,7 @@ fn long_lists_of(length: i32) {
         quad(&mut mesh, [-900_000, -700_000], [1_000_000, 500_000], z);
     }
     let sets = [[0.0, 0.0, 1.0], [0.6, 0.0, -0.8]];
-    let maps = Maps::new(&sets, around(&mesh.vertices), 31).unwrap();
+    let maps = maps_around(&mesh, &sets, 31);
     let made = layers(&maps, &mesh).unwrap();
     let found = longest(&maps, &made);
     assert!(found > length.unsigned_abs() as usize, "{found}");
@@ -43,7 +48,7 @@ fn chains_in_parts() {
     for i in 0..4000 {
         quad(&mut mesh, [-9000, -9000], [9000, 9000], i * 7919 % 8192);
     }
-    let maps = Maps::new(&[[0.0, 0.0, 1.0]], around(&mesh.vertices), 8).unwrap();
+    let maps = maps_around(&mesh, &[[0.0, 0.0, 1.0]], 8);
     let made = layers(&maps, &mesh).unwrap();
     let length = longest(&maps, &made);
     assert!(length * 11 > STEPS as usize, "{length}");
@@ -63,7 +68,7 @@ fn large_triangles() {
     }
     let sets = [[0.0, 0.0, 1.0], [0.36, 0.48, 0.8]];
     for resolution in [362, RESOLUTION_MAX] {
-        let maps = Maps::new(&sets, around(&mesh.vertices), resolution).unwrap();
+        let maps = maps_around(&mesh, &sets, resolution);
         let made = layers(&maps, &mesh).unwrap();
         let check = everywhere((&maps, &mesh), AMPLE, |stages, name| {
             let seen = stages.layers().expect("room");
@@ -79,7 +84,7 @@ fn large_triangles() {
 fn overflowing_chains() {
     let mesh = sphere([3e6; 3], 12, 8);
     let sets = [[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]];
-    let maps = Maps::new(&sets, around(&mesh.vertices), 20).unwrap();
+    let maps = maps_around(&mesh, &sets, 20);
     let made = layers(&maps, &mesh).unwrap();
     let total = u32::try_from(made.keys.len()).unwrap();
     // In one batch and in two.
