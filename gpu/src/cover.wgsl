@@ -1,60 +1,15 @@
-// The pixels of a map that triangles cover. A workgroup takes 64 triangles of a map: it leaves out
-// those whose box holds no middle of a pixel, as most are small; of what is left, its invocations
-// share the pixels of all boxes.
+// The pixels of a map that triangles cover. Small triangles are drawn by an invocation each, large
+// ones by a workgroup each; which is which does not depend on the map.
 // Twins: spec/src/raster.rs, whose rules these are, and spec/src/ldm/layers.rs.
-//
-// Edge functions fit in 32 bits: they are at most the area of a map in sub-pixels, and what wraps
-// around in between does so twice (spec/src/ldm/map.rs).
 //#import item
 //#import maps
 //#import depth
-//#import scan
 
 // Three for each triangle, on the lattice; the fourth numbers are not used.
 @group(0) @binding(2) var<storage, read> corners: array<vec4<i32>>;
 
-// A triangle in positive orientation: x, y in sub-pixels from the map's corner, and the key.
-struct Held {
-    a: vec3<i32>,
-    // The first pixel of its box, and pixels a row.
-    column: i32,
-    b: vec3<i32>,
-    row: i32,
-    c: vec3<i32>,
-    width: u32,
-}
-
-var<workgroup> held: array<Held, 64>;
-
-// Pixels of the boxes of all triangles before each, and of all.
-var<workgroup> firsts: array<u32, 64>;
-var<workgroup> all_pixels: u32;
-
-// Triangles whose boxes may hold the middle of a pixel.
-var<workgroup> chosen: array<u32, 64>;
-var<workgroup> all_chosen: atomic<u32>;
-
-// What a workgroup draws into which maps.
-struct Job {
-    first_map: u32,
-    end: u32,
-    // The triangle of an invocation, if there is one.
-    triangle: u32,
-    exists: bool,
-}
-
-// Corners are read once for all maps of a job.
-fn job_of(chunk: u32, lane: u32) -> Job {
-    let chunks = max((told.triangles + WORKGROUP - 1u) / WORKGROUP, 1u);
-    let first = chunk / chunks * told.at_once;
-    let triangle = chunk % chunks * WORKGROUP + lane;
-    return Job(
-        told.first_map + min(first, told.maps),
-        told.first_map + min(first + told.at_once, told.maps),
-        triangle,
-        triangle < told.triangles,
-    );
-}
+// Large triangles, in whatever order invocations come; `unfinished` counts them.
+@group(0) @binding(18) var<storage, read_write> larges: array<u32>;
 
 struct Triangle {
     a: vec3<i32>,
@@ -62,12 +17,32 @@ struct Triangle {
     c: vec3<i32>,
 }
 
-fn triangle_of(job: Job) -> Triangle {
-    let at = 3u * min(job.triangle, told.triangles - 1u);
-    return Triangle(corners[at].xyz, corners[at + 1u].xyz, corners[at + 2u].xyz);
+fn triangle_of(number: u32) -> Triangle {
+    return Triangle(corners[3u * number].xyz, corners[3u * number + 1u].xyz, corners[3u * number + 2u].xyz);
 }
 
-// Pixels of which a box from `low` to `high`, in sub-pixels, holds the middle.
+// Whether its box is longer than told.small along an axis of the lattice.
+fn is_large(triangle: Triangle) -> bool {
+    let low = min(triangle.a, min(triangle.b, triangle.c));
+    let high = max(triangle.a, max(triangle.b, triangle.c));
+    return any(high - low > vec3(told.small));
+}
+
+// A triangle in a map.
+struct Cover {
+    // In positive orientation: x, y in sub-pixels from the map's corner, and the key.
+    a: vec3<i32>,
+    // The first pixel of its box, and pixels a row; none if nothing is covered.
+    column: i32,
+    b: vec3<i32>,
+    row: i32,
+    c: vec3<i32>,
+    width: u32,
+    // Pixels of its box.
+    pixels: u32,
+}
+
+// Pixels of which a box, in sub-pixels, holds the middle.
 struct Box {
     first: vec2<i32>,
     last: vec2<i32>,
@@ -97,77 +72,43 @@ fn is_empty(box: Box) -> bool {
 // 6 U of both together, 0.07 sub-pixels for U = 2^-23, the base by 0.01. An exact place is rounded by
 // half. Floor takes less than one more off, below, and two are added above.
 fn may_cover(map: Map, triangle: Triangle) -> bool {
-    let scale = ldexp(1.0, -i32(told.shift));
-    let columns = vec3<f32>(map.columns) * scale;
-    let rows = vec3<f32>(map.rows) * scale;
     let lowest = vec3(told.low_x, told.low_y, told.low_z);
     let a = vec3<f32>(triangle.a - lowest);
     let b = vec3<f32>(triangle.b - lowest);
     let c = vec3<f32>(triangle.c - lowest);
-    let x = vec3(dot(columns, a), dot(columns, b), dot(columns, c)) + map.base.x;
-    let y = vec3(dot(rows, a), dot(rows, b), dot(rows, c)) + map.base.y;
+    let x = vec3(dot(map.about_columns, a), dot(map.about_columns, b), dot(map.about_columns, c)) + map.about_left;
+    let y = vec3(dot(map.about_rows, a), dot(map.about_rows, b), dot(map.about_rows, c)) + map.about_top;
     let low = vec2(min(x.x, min(x.y, x.z)), min(y.x, min(y.y, y.z)));
     let high = vec2(max(x.x, max(x.y, x.z)), max(y.x, max(y.y, y.z)));
     return !is_empty(box_of(map, vec2<i32>(floor(low)) - 1, vec2<i32>(floor(high)) + 2));
 }
 
-fn place_of(map: Map, point: vec3<i32>) -> vec3<i32> {
-    return vec3(column_and_row(map, point), 0);
-}
-
-// Twice the signed area of a, b, point.
+// Twice the signed area of a, b, point. It fits in 32 bits: at most the area of the scene in
+// sub-pixels; what wraps around in between does so twice (spec/src/ldm/map.rs).
 fn edge(a: vec3<i32>, b: vec3<i32>, point: vec2<i32>) -> i32 {
     return (b.x - a.x) * (point.y - a.y) - (b.y - a.y) * (point.x - a.x);
 }
 
-// Holds a triangle, if it has an area, and gives the number of pixels of its box.
-fn hold(map: Map, number: u32, lane: u32, with_keys: bool) -> u32 {
-    let points = Triangle(corners[3u * number].xyz, corners[3u * number + 1u].xyz, corners[3u * number + 2u].xyz);
-    var a = place_of(map, points.a);
-    var b = place_of(map, points.b);
-    var c = place_of(map, points.c);
+fn cover_of(map: Map, triangle: Triangle, with_keys: bool) -> Cover {
+    var a = vec3(column_and_row(map, triangle.a), 0);
+    var b = vec3(column_and_row(map, triangle.b), 0);
+    var c = vec3(column_and_row(map, triangle.c), 0);
     let area = edge(a, b, c.xy);
     let box = box_of(map, min(a.xy, min(b.xy, c.xy)), max(a.xy, max(b.xy, c.xy)));
     if area == 0 || is_empty(box) {
-        return 0u;
+        return Cover(a, 0, b, 0, c, 0u, 0u);
     }
     if with_keys {
-        a.z = key_of(map, points.a);
-        b.z = key_of(map, points.b);
-        c.z = key_of(map, points.c);
+        a.z = key_of(map, triangle.a);
+        b.z = key_of(map, triangle.b);
+        c.z = key_of(map, triangle.c);
     }
     let size = vec2<u32>(box.last - box.first + 1);
-    held[lane] = Held(a, box.first.x, b, box.first.y, c, size.x);
+    let pixels = size.x * size.y;
     if area < 0 {
-        held[lane].b = c;
-        held[lane].c = b;
+        return Cover(a, box.first.x, c, box.first.y, b, size.x, pixels);
     }
-    return size.x * size.y;
-}
-
-// Looks at the triangles of a job, and gives the number of pixels to be shared. All of a workgroup
-// come along.
-fn look(map: Map, job: Job, triangle: Triangle, lane: u32, with_keys: bool) -> u32 {
-    if lane == 0u {
-        atomicStore(&all_chosen, 0u);
-    }
-    workgroupBarrier();
-    if job.exists {
-        if may_cover(map, triangle) {
-            chosen[atomicAdd(&all_chosen, 1u)] = job.triangle;
-        }
-    }
-    workgroupBarrier();
-    var pixels = 0u;
-    if lane < atomicLoad(&all_chosen) {
-        pixels = hold(map, chosen[lane], lane, with_keys);
-    }
-    let before = parts_before(lane, pixels);
-    firsts[lane] = before;
-    if lane == WORKGROUP - 1u {
-        all_pixels = before + pixels;
-    }
-    return workgroupUniformLoad(&all_pixels);
+    return Cover(a, box.first.x, b, box.first.y, c, size.x, pixels);
 }
 
 // A pixel of a triangle's box.
@@ -175,21 +116,7 @@ struct Sample {
     is_covered: bool,
     // Among those of the batch.
     pixel: u32,
-    // The triangle, and its edge values there.
-    held: u32,
     edges: vec3<i32>,
-}
-
-// Of all triangles held, the last that begins at or before a pixel.
-fn holder(i: u32) -> u32 {
-    var at = 0u;
-    at += select(0u, 32u, firsts[at + 32u] <= i);
-    at += select(0u, 16u, firsts[at + 16u] <= i);
-    at += select(0u, 8u, firsts[at + 8u] <= i);
-    at += select(0u, 4u, firsts[at + 4u] <= i);
-    at += select(0u, 2u, firsts[at + 2u] <= i);
-    at += select(0u, 1u, firsts[at + 1u] <= i);
-    return at;
 }
 
 // 0 on a top or left edge, else 1: the smallest edge value of a covered sample.
@@ -198,26 +125,91 @@ fn least(a: vec3<i32>, b: vec3<i32>) -> i32 {
     return select(1, 0, top_left);
 }
 
-fn sample_of(map: Map, i: u32) -> Sample {
-    let at = holder(i);
-    let own = held[at];
-    let number = i - firsts[at];
-    let pixel = vec2(own.column, own.row) + vec2<i32>(vec2(number % own.width, number / own.width));
+// Of a box of at most 726 x 726 pixels: a quotient below 726 is off by less than 2^-13, and half a
+// pixel off the next integer.
+fn sample_of(map: Map, cover: Cover, i: u32) -> Sample {
+    let down = u32((f32(i) + 0.5) / f32(cover.width));
+    let pixel = vec2(cover.column + i32(i - down * cover.width), cover.row + i32(down));
     let middle = (pixel << vec2(told.bits)) + half_pixel();
     let edges = vec3(
-        edge(own.b, own.c, middle),
-        edge(own.c, own.a, middle),
-        edge(own.a, own.b, middle),
+        edge(cover.b, cover.c, middle),
+        edge(cover.c, cover.a, middle),
+        edge(cover.a, cover.b, middle),
     );
-    let least = vec3(least(own.b, own.c), least(own.c, own.a), least(own.a, own.b));
+    let least = vec3(least(cover.b, cover.c), least(cover.c, cover.a), least(cover.a, cover.b));
     let first = map.first - told.first_pixel;
-    return Sample(all(edges >= least), first + u32(pixel.y) * map.width + u32(pixel.x), at, edges);
+    return Sample(all(edges >= least), first + u32(pixel.y) * map.width + u32(pixel.x), edges);
 }
 
 // Edge values of a covered sample add up to the area.
-fn key_at(sample: Sample) -> u32 {
-    let own = held[sample.held];
-    let z = vec3<u32>(vec3(own.a.z, own.b.z, own.c.z));
+fn key_at(cover: Cover, sample: Sample) -> u32 {
+    let z = vec3<u32>(vec3(cover.a.z, cover.b.z, cover.c.z));
     let area = sample.edges.x + sample.edges.y + sample.edges.z;
     return depth_key(z, wide(area), wide(sample.edges.x), wide(sample.edges.y), wide(sample.edges.z));
+}
+
+// Maps of a workgroup that draws small triangles: corners are read once for all.
+const MAPS_AT_ONCE: u32 = 8u;
+
+// Of 64 small triangles and those maps, the pairs that may cover something: most do not, and the
+// others are shared among the workgroup. Map and triangle, six bits.
+var<workgroup> pairs: array<u32, 512>;
+var<workgroup> all_pairs: atomic<u32>;
+
+// The first map and the first triangle of a workgroup.
+struct Job {
+    map: u32,
+    triangle: u32,
+}
+
+fn small_job(chunk: u32) -> Job {
+    let chunks = (told.triangles + WORKGROUP - 1u) / WORKGROUP;
+    return Job(chunk / chunks * MAPS_AT_ONCE, chunk % chunks * WORKGROUP);
+}
+
+// Finds pairs; all of a workgroup come along.
+fn find_pairs(job: Job, lane: u32) {
+    if lane == 0u {
+        atomicStore(&all_pairs, 0u);
+    }
+    workgroupBarrier();
+    if job.triangle + lane < told.triangles {
+        let triangle = triangle_of(job.triangle + lane);
+        let end = select(min(MAPS_AT_ONCE, told.maps - min(told.maps, job.map)), 0u, is_large(triangle));
+        for (var number = 0u; number < end; number += 1u) {
+            if may_cover(maps[told.first_map + job.map + number], triangle) {
+                pairs[atomicAdd(&all_pairs, 1u)] = number * WORKGROUP + lane;
+            }
+        }
+    }
+    workgroupBarrier();
+}
+
+fn map_of(job: Job, pair: u32) -> Map {
+    return maps[told.first_map + job.map + pair / WORKGROUP];
+}
+
+fn small_cover(map: Map, job: Job, pair: u32, with_keys: bool) -> Cover {
+    return cover_of(map, triangle_of(job.triangle + pair % WORKGROUP), with_keys);
+}
+
+// Large triangles of a workgroup, in one map.
+const LARGE_AT_ONCE: u32 = 16u;
+
+var<workgroup> held: array<Cover, LARGE_AT_ONCE>;
+
+fn large_job(chunk: u32) -> Job {
+    let chunks = (told.larges + LARGE_AT_ONCE - 1u) / LARGE_AT_ONCE;
+    return Job(chunk / chunks, chunk % chunks * LARGE_AT_ONCE);
+}
+
+// How many there are; all of a workgroup come along.
+fn hold(job: Job, lane: u32, with_keys: bool) -> u32 {
+    let count = select(0u, min(LARGE_AT_ONCE, told.larges - job.triangle), job.map < told.maps);
+    if lane < count {
+        let triangle = triangle_of(larges[job.triangle + lane]);
+        held[lane] = cover_of(maps[told.first_map + job.map], triangle, with_keys);
+    }
+    workgroupBarrier();
+    return count;
 }

@@ -5,6 +5,7 @@ mod layout;
 mod module;
 mod skeleton;
 mod stage;
+mod stages;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -17,7 +18,8 @@ use module::{Checks, Module, bindings, uses};
 
 pub use foreign::Foreign;
 pub use skeleton::skeleton;
-pub use stage::{STAGES, Stage};
+pub use stage::Stage;
+pub use stages::STAGES;
 
 /// A pipeline and the variables that it uses.
 pub struct Kernel {

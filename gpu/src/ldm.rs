@@ -17,6 +17,12 @@ use triptych_spec::ldm;
 pub use stages::Stages;
 pub use timed::{Span, Timed};
 
+/// Maps of a workgroup that draws small triangles. Twin: `MAPS_AT_ONCE` in `cover.wgsl`.
+pub const MAPS_AT_ONCE: u32 = 8;
+
+/// Large triangles of a workgroup. Twin: `LARGE_AT_ONCE` in `cover.wgsl`.
+pub const LARGE_AT_ONCE: u32 = 16;
+
 /// What kernels are told. Twin: `Told` in `maps.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -59,8 +65,10 @@ pub struct Told {
     pub low_y: i32,
     /// Along z.
     pub low_z: i32,
-    /// Maps of a workgroup that draws triangles.
-    pub at_once: u32,
+    /// The longest side of a small triangle's box on the lattice.
+    pub small: i32,
+    /// How many triangles are large.
+    pub larges: u32,
 }
 
 /// A map as kernels read it. Twin: `Map` in `maps.wgsl`.
@@ -74,8 +82,7 @@ struct Packed {
     depths: Point,
     first: u32,
     planes: [[i32; 4]; 3],
-    base: [f32; 2],
-    unused: [f32; 2],
+    about: [[f32; 4]; 2],
 }
 
 impl Packed {
@@ -94,22 +101,22 @@ impl Packed {
             depths,
             first: map.first,
             planes: [0, 1, 2].map(plane),
-            base: [0, 1].map(|axis| base(map.rows[axis], shift, low, map.origin[axis])),
-            unused: [0.0; 2],
+            about: [0, 1].map(|axis| about(map.rows[axis], shift, low, map.origin[axis])),
         }
     }
 }
 
-/// Where a point is along an axis of a map, from its origin, without rounding but to `f32`.
-fn base(row: Point, shift: u32, point: Point, origin: i32) -> f32 {
-    let products = row
-        .iter()
-        .zip(point)
-        .map(|(r, p)| i64::from(*r) * i64::from(p));
-    let place = products.sum::<i64>() as f64 / (1_u64 << shift) as f64;
+/// A row of a map in sub-pixels, and where a point is along it from the map's origin, in `f32`.
+fn about(row: Point, shift: u32, point: Point, origin: i32) -> [f32; 4] {
+    let products = row.iter().zip(point);
+    let products = products.map(|(r, p)| i64::from(*r) * i64::from(p));
+    let unit = (1_u64 << shift) as f64;
+    // Below 2^54: rounding to f64 moves it by less than 2^-27 of a sub-pixel.
+    let place = products.sum::<i64>() as f64 / unit - f64::from(origin);
     #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
-    let base = (place - f64::from(origin)) as f32;
-    base
+    let rounded = |x: f64| x as f32;
+    let [x, y, z] = row.map(|c| rounded(f64::from(c) / unit));
+    [x, y, z, rounded(place)]
 }
 
 /// A receiver as kernels read it. Twin: `Receiver` in `receiver.wgsl`.

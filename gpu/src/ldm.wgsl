@@ -4,10 +4,11 @@
 // Lists are counted, filled and sorted in passes of their own, and read in later ones; within a
 // pass, invocations meet in atomics only.
 //#import cover
+//#import scan
 //#import sort
 //#import counter
 //#import relink
-//#import receiver
+//#import opened
 
 // First entry of each pixel's linked list, or EOL.
 @group(0) @binding(10) var<storage, read_write> heads: array<atomic<u32>>;
@@ -22,49 +23,56 @@ struct Link {
 // Where the sort of each list stands.
 @group(0) @binding(12) var<storage, read_write> progress: array<Progress>;
 
-struct Hits {
-    // The receiver's own key.
-    key: i32,
-    // The nearest ones before and behind it, or NOTHING.
-    before: u32,
-    behind: u32,
+// One triangle: whether it is large.
+@compute @workgroup_size(64)
+fn layers_larges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let triangle = item(id, groups);
+    if triangle < told.items {
+        if is_large(triangle_of(triangle)) {
+            larges[atomicAdd(&unfinished, 1u)] = triangle;
+        }
+    }
 }
 
-// For each map of the dispatch, of every receiver.
-@group(0) @binding(14) var<storage, read_write> hits: array<Hits>;
-
-struct Open {
-    whole: u32,
-    part: f32,
-}
-
-@group(0) @binding(15) var<storage, read_write> opened: array<Open>;
-
-// Radiance from each map's direction, and from the opposite one; the fourth numbers of these and
-// of light are not used.
-@group(0) @binding(16) var<storage, read> skies: array<array<vec4<f32>, 2>>;
-
-@group(0) @binding(17) var<storage, read_write> light: array<vec4<f32>>;
-
-// 64 triangles of a map.
+// 64 small triangles and some maps.
 @compute @workgroup_size(64)
 fn layers_count(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let job = job_of(chunk_of(group, groups), lane);
-    let triangle = triangle_of(job);
-    for (var number = job.first_map; number < job.end; number += 1u) {
-        let map = maps[number];
-        let total = look(map, job, triangle, lane, false);
-        for (var i = lane; i < total; i += WORKGROUP) {
-            let sample = sample_of(map, i);
+    let job = small_job(chunk_of(group, groups));
+    find_pairs(job, lane);
+    for (var i = lane; i < atomicLoad(&all_pairs); i += WORKGROUP) {
+        let map = map_of(job, pairs[i]);
+        let cover = small_cover(map, job, pairs[i], false);
+        for (var at = 0u; at < cover.pixels; at += 1u) {
+            let sample = sample_of(map, cover, at);
             if sample.is_covered {
                 atomicAdd(&counts[sample.pixel], 1u);
             }
         }
-        workgroupBarrier();
+    }
+}
+
+// Large triangles and a map.
+@compute @workgroup_size(64)
+fn layers_count_large(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let job = large_job(chunk_of(group, groups));
+    let count = hold(job, lane, false);
+    let map = maps[told.first_map + job.map];
+    for (var i = 0u; i < count; i += 1u) {
+        let cover = held[i];
+        for (var at = lane; at < cover.pixels; at += WORKGROUP) {
+            let sample = sample_of(map, cover, at);
+            if sample.is_covered {
+                atomicAdd(&counts[sample.pixel], 1u);
+            }
+        }
     }
 }
 
@@ -102,29 +110,51 @@ fn layers_ends(
     }
 }
 
-// 64 triangles of a map: from the end of each run down; after the last, the end has become the
-// start.
+// The same, from the end of each run down; after the last, the end has become the start.
 @compute @workgroup_size(64)
 fn layers_fill(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let job = job_of(chunk_of(group, groups), lane);
-    let triangle = triangle_of(job);
-    for (var number = job.first_map; number < job.end; number += 1u) {
-        let map = maps[number];
-        let total = look(map, job, triangle, lane, true);
-        for (var i = lane; i < total; i += WORKGROUP) {
-            let sample = sample_of(map, i);
+    let job = small_job(chunk_of(group, groups));
+    find_pairs(job, lane);
+    for (var i = lane; i < atomicLoad(&all_pairs); i += WORKGROUP) {
+        let map = map_of(job, pairs[i]);
+        let cover = small_cover(map, job, pairs[i], true);
+        for (var at = 0u; at < cover.pixels; at += 1u) {
+            let sample = sample_of(map, cover, at);
             if sample.is_covered {
                 let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
                 if address < told.capacity {
-                    listed[address] = key_at(sample);
+                    listed[address] = key_at(cover, sample);
                 }
             }
         }
-        workgroupBarrier();
+    }
+}
+
+// The same.
+@compute @workgroup_size(64)
+fn layers_fill_large(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let job = large_job(chunk_of(group, groups));
+    let count = hold(job, lane, true);
+    let map = maps[told.first_map + job.map];
+    for (var i = 0u; i < count; i += 1u) {
+        let cover = held[i];
+        for (var at = lane; at < cover.pixels; at += WORKGROUP) {
+            let sample = sample_of(map, cover, at);
+            if sample.is_covered {
+                let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
+                if address < told.capacity {
+                    listed[address] = key_at(cover, sample);
+                }
+            }
+        }
     }
 }
 
@@ -156,29 +186,53 @@ fn layers_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     }
 }
 
-// 64 triangles of a map: the paper's lists, in whatever order invocations come.
+// The paper's lists, in whatever order invocations come; 64 small triangles and some maps.
 @compute @workgroup_size(64)
 fn chain(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let job = job_of(chunk_of(group, groups), lane);
-    let triangle = triangle_of(job);
-    for (var number = job.first_map; number < job.end; number += 1u) {
-        let map = maps[number];
-        let total = look(map, job, triangle, lane, true);
-        for (var i = lane; i < total; i += WORKGROUP) {
-            let sample = sample_of(map, i);
+    let job = small_job(chunk_of(group, groups));
+    find_pairs(job, lane);
+    for (var i = lane; i < atomicLoad(&all_pairs); i += WORKGROUP) {
+        let map = map_of(job, pairs[i]);
+        let cover = small_cover(map, job, pairs[i], true);
+        for (var at = 0u; at < cover.pixels; at += 1u) {
+            let sample = sample_of(map, cover, at);
             if sample.is_covered {
                 let address = claim();
                 if address < told.capacity {
                     let next = atomicExchange(&heads[sample.pixel], address);
-                    nodes[address] = Link(key_at(sample), next);
+                    nodes[address] = Link(key_at(cover, sample), next);
                 }
             }
         }
-        workgroupBarrier();
+    }
+}
+
+// Large triangles and a map.
+@compute @workgroup_size(64)
+fn chain_large(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let job = large_job(chunk_of(group, groups));
+    let count = hold(job, lane, true);
+    let map = maps[told.first_map + job.map];
+    for (var i = 0u; i < count; i += 1u) {
+        let cover = held[i];
+        for (var at = lane; at < cover.pixels; at += WORKGROUP) {
+            let sample = sample_of(map, cover, at);
+            if sample.is_covered {
+                let address = claim();
+                if address < told.capacity {
+                    let next = atomicExchange(&heads[sample.pixel], address);
+                    nodes[address] = Link(key_at(cover, sample), next);
+                }
+            }
+        }
     }
 }
 
@@ -206,76 +260,25 @@ fn chain_sort(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
 @compute @workgroup_size(64)
 fn neighbours(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = item(id, groups);
-    if i >= told.maps * told.items {
-        return;
+    if i < told.maps * told.items {
+        find_neighbours(i);
     }
-    let found = neighbours_of(maps[told.first_map + i / told.items], receivers[i % told.items]);
-    var own = Hits(found.key, NOTHING, NOTHING);
-    if found.before > found.start {
-        own.before = listed[found.before - 1u];
-    }
-    if found.behind < found.end {
-        own.behind = listed[found.behind];
-    }
-    hits[i] = own;
 }
 
-// What a hit so many keys away lets pass.
-fn passed(keys: u32) -> f32 {
-    let part = f32(keys) / f32(told.most);
-    var all = part;
-    for (var i = 1u; i < told.power; i += 1u) {
-        all *= part;
-    }
-    return all;
-}
-
-// A receiver, and all maps of the dispatch; those of the first one start from nothing.
+// A receiver, and all maps of the dispatch.
 @compute @workgroup_size(64)
 fn occlusion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = item(id, groups);
-    if i >= told.items {
-        return;
+    if i < told.items {
+        add_open(i);
     }
-    let receiver = receivers[i];
-    var sum = opened[i];
-    for (var at = told.first_map; at < told.first_map + told.maps; at += 1u) {
-        let map = maps[at];
-        let weight = weight_of(map, receiver.normal);
-        if weight == 0 {
-            continue;
-        }
-        let size = u32(abs(weight));
-        if told.most == 0u {
-            sum.whole += select(size, 0u, is_blocked(map, receiver, weight));
-            continue;
-        }
-        let seen = seen_by(map, receiver, weight);
-        let keys = u32(abs(i32(seen.hit) - seen.key));
-        if seen.hit == NOTHING || keys >= told.most {
-            sum.whole += size;
-        } else if told.power > 0u {
-            sum.part += f32(size) * passed(keys);
-        }
-    }
-    opened[i] = sum;
 }
 
 // The same.
 @compute @workgroup_size(64)
 fn environment(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = item(id, groups);
-    if i >= told.items {
-        return;
+    if i < told.items {
+        add_light(i);
     }
-    let receiver = receivers[i];
-    var sum = light[i];
-    for (var at = told.first_map; at < told.first_map + told.maps; at += 1u) {
-        let map = maps[at];
-        let weight = weight_of(map, receiver.normal);
-        if weight != 0 && !is_blocked(map, receiver, weight) {
-            sum += f32(abs(weight)) * skies[at][u32(weight < 0)];
-        }
-    }
-    light[i] = sum;
 }

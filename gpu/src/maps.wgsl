@@ -34,8 +34,10 @@ struct Told {
     low_x: i32,
     low_y: i32,
     low_z: i32,
-    // Maps of a workgroup that draws triangles.
-    at_once: u32,
+    // The longest side of a small triangle's box on the lattice.
+    small: i32,
+    // How many triangles are large.
+    larges: u32,
 }
 
 @group(0) @binding(0) var<uniform> told: Told;
@@ -58,9 +60,11 @@ struct Map {
     top: i32,
     towards: vec3<i32>,
     nearest: i32,
-    // Where the lowest corner of the box that is drawn is, rounded to f32.
-    base: vec2<f32>,
-    unused: vec2<f32>,
+    // The first two rows in sub-pixels, in f32, and where the lowest corner of what is drawn is.
+    about_columns: vec3<f32>,
+    about_left: f32,
+    about_rows: vec3<f32>,
+    about_top: f32,
 }
 
 @group(0) @binding(1) var<storage, read> maps: array<Map>;

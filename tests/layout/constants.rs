@@ -4,6 +4,7 @@ use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
+use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{EOL, NOTHING};
@@ -48,6 +49,8 @@ fn constants_are_those_of_rust() {
         ("TRACED", i64::from(TRACED)),
         ("PLACE_MAX", i64::from(PLACE_MAX)),
         ("COARSE_BITS", i64::from(COARSE_BITS)),
+        ("MAPS_AT_ONCE", i64::from(MAPS_AT_ONCE)),
+        ("LARGE_AT_ONCE", i64::from(LARGE_AT_ONCE)),
         ("PLANE_BITS", i64::from(PLANE_BITS)),
         ("WEIGHT_BITS", i64::from(WEIGHT_BITS)),
     ];

@@ -6,6 +6,7 @@ use naga::{Module, TypeInner};
 use triptych_gpu::abuffer::PROGRESS;
 use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
+use triptych_gpu::ldm::Told;
 use triptych_gpu::rsm::{Parameters, View};
 
 use super::everywhere;
@@ -67,16 +68,48 @@ fn the_frame_is_that_of_rust() {
     everywhere("Cells", &(cells, 64), layout);
 }
 
+macro_rules! layout_of {
+    ($of:ty: $($field:ident)*) => {{
+        let fields = [$((stringify!($field), offset_of!($of, $field))),*];
+        let word = |at: usize| u32::try_from(at).expect("a small struct");
+        let fields = fields.map(|(name, at)| (name, word(at)));
+        (named(&fields), word(size_of::<$of>()))
+    }};
+}
+
+#[test]
+fn what_is_told_of_maps_is_that_of_rust() {
+    let told = layout_of!(Told: bits shift half half_shift first_map maps first_pixel pixels triangles
+        items first_row rows capacity run most power low_x low_y low_z small larges);
+    everywhere("Told", &told, layout);
+    let map = [
+        ("columns", 0),
+        ("width", 12),
+        ("rows", 16),
+        ("height", 28),
+        ("depths", 32),
+        ("first", 44),
+        ("across", 48),
+        ("left", 60),
+        ("down", 64),
+        ("top", 76),
+        ("towards", 80),
+        ("nearest", 92),
+        ("about_columns", 96),
+        ("about_left", 108),
+        ("about_rows", 112),
+        ("about_top", 124),
+    ];
+    everywhere("Map", &(named(&map), 128), layout);
+    let receiver = [("point", 0), ("off", 12), ("normal", 16), ("unused", 28)];
+    everywhere("Receiver", &(named(&receiver), 32), layout);
+    everywhere("Hits", &words(&["key", "before", "behind"]), layout);
+    everywhere("Open", &words(&["whole", "part"]), layout);
+    everywhere("Link", &words(&["key", "next"]), layout);
+}
+
 #[test]
 fn the_frame_of_indirect_light_is_that_of_rust() {
-    macro_rules! layout_of {
-        ($of:ty: $($field:ident)*) => {{
-            let fields = [$((stringify!($field), offset_of!($of, $field))),*];
-            let word = |at: usize| u32::try_from(at).expect("a small struct");
-            let fields = fields.map(|(name, at)| (name, word(at)));
-            (named(&fields), word(size_of::<$of>()))
-        }};
-    }
     let parameters = layout_of!(Parameters: width height map_width map_height coarse_width
         coarse_height radius stride divisor blur offset bias clamp edge items first rows reference
         unused strength background);

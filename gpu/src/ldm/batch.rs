@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use triptych_spec::ldm::Maps;
 
-use super::Told;
+use super::{LARGE_AT_ONCE, Told};
+use crate::frame::WORKGROUP;
 
-/// Pixels that an invocation looks at when 64 triangles are drawn into maps, at most: if all are as
-/// large as the map, as many as the maps have. llvmpipe leaves every loop after 65,535 iterations.
-const DRAWN: u32 = 60_000;
+/// Pixels of a map that a workgroup looks at in a dispatch, at most: if all its large triangles are
+/// as large as the map, an invocation has a 64th of each. llvmpipe leaves every loop after 65,535
+/// iterations in all.
+const DRAWN: u32 = 60_000 / LARGE_AT_ONCE * WORKGROUP;
 
 /// Maps that are built at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,7 +71,7 @@ impl Span {
     pub(super) fn told(&self, told: Told) -> Told {
         Told {
             first_map: self.maps.start,
-            maps: self.maps.end - self.maps.start,
+            maps: self.count(),
             first_pixel: self.pixels.start,
             pixels: self.len(),
             items: self.len(),
@@ -77,15 +79,25 @@ impl Span {
         }
     }
 
-    /// Dispatches that draw triangles, each into some rows of all maps.
-    pub(super) fn drawn(&self, told: Told) -> impl Iterator<Item = Told> {
-        let rows = (DRAWN / told.at_once.max(1) / self.width.max(1)).max(1);
-        let told = self.told(told);
+    /// The dispatch that draws small triangles, and those that draw large ones, each into some rows
+    /// of all maps.
+    pub(super) fn drawn(&self, told: Told) -> (Told, impl Iterator<Item = Told>) {
+        let all = Told {
+            rows: self.height,
+            ..self.told(told)
+        };
+        let rows = (DRAWN / self.width.max(1)).max(1);
         let firsts = (0..self.height).step_by(rows as usize);
-        firsts.map(move |first_row| Told {
+        let parts = firsts.map(move |first_row| Told {
             first_row,
             rows,
-            ..told
-        })
+            ..all
+        });
+        (all, parts)
+    }
+
+    /// Number of maps.
+    pub(super) fn count(&self) -> u32 {
+        self.maps.end - self.maps.start
     }
 }

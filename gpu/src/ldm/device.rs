@@ -6,7 +6,7 @@ use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::Maps;
 
 use super::batch::Span;
-use super::{Packed, Told};
+use super::{LARGE_AT_ONCE, MAPS_AT_ONCE, Packed, Told};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -26,6 +26,7 @@ pub(super) struct Device<'g> {
     maps: wgpu::Buffer,
     corners: wgpu::Buffer,
     pub(super) unfinished: wgpu::Buffer,
+    larges: wgpu::Buffer,
     /// Bytes of a buffer of lists, at most.
     pub(super) room: u64,
 }
@@ -54,7 +55,7 @@ impl<'g> Device<'g> {
         let low = low.unwrap_or_default();
         let packed = |map| Packed::new(map, all.shifts[0], low);
         let maps: Vec<Packed> = all.maps.iter().map(packed).collect();
-        Ok(Self {
+        let mut device = Self {
             told: Told {
                 bits: all.bits,
                 shift: all.shifts[0],
@@ -64,7 +65,7 @@ impl<'g> Device<'g> {
                 low_x: low[0],
                 low_y: low[1],
                 low_z: low[2],
-                at_once: at_once(gpu),
+                small: small(all.pixel),
                 ..Told::default()
             },
             maps: gpu.upload("maps", &maps)?,
@@ -74,12 +75,26 @@ impl<'g> Device<'g> {
             gpu,
             kernels,
             all,
-        })
+            larges: gpu.storage("large triangles", 4 * u64::from(triangles))?,
+        };
+        device.sizes()?.run(gpu)?;
+        device.told.larges = gpu.take(&device.unfinished)?;
+        Ok(device)
+    }
+
+    /// The pass that tells large triangles from small ones.
+    pub(super) fn sizes(&self) -> Result<Ready, GpuError> {
+        let told = Told {
+            items: self.told.triangles,
+            ..self.told
+        };
+        let pass = self.each("layers_larges", told, &[])?;
+        Ok(pass.after_clearing(self.unfinished.clone()))
     }
 
     /// Bytes of maps and triangles.
     pub(super) fn bytes(&self) -> u64 {
-        self.maps.size() + self.corners.size()
+        self.maps.size() + self.corners.size() + self.larges.size()
     }
 
     /// So many workgroups, to be recorded.
@@ -96,6 +111,7 @@ impl<'g> Device<'g> {
             ("maps", &self.maps),
             ("corners", &self.corners),
             ("unfinished", &self.unfinished),
+            ("larges", &self.larges),
         ];
         all.extend_from_slice(buffers);
         Ready::new(self.gpu, self.kernels, ("ldm", entry), groups, &all)
@@ -111,33 +127,47 @@ impl<'g> Device<'g> {
         self.groups(entry, told, told.items.div_ceil(WORKGROUP), buffers)
     }
 
-    /// Passes that draw all triangles into all maps of a batch.
+    /// Passes that draw all triangles into all maps of a batch: the kernel for small ones, and the
+    /// one for large ones.
     ///
     /// # Errors
     /// More workgroups than a dispatch has, and what the device refuses.
     pub(super) fn draw(
         &self,
-        entry: &str,
+        [small, large]: [&str; 2],
         (span, capacity): (&Span, u32),
         buffers: &Buffers<'_>,
     ) -> Result<Vec<Ready>, GpuError> {
-        let chunks = u64::from(self.told.triangles.div_ceil(WORKGROUP));
-        let jobs = (span.maps.end - span.maps.start).div_ceil(self.told.at_once);
-        let groups = chunks * u64::from(jobs);
-        let groups = u32::try_from(groups).map_err(|_| GpuError::Limit {
-            adapter: self.gpu.name.clone(),
-            what: "workgroups that draw triangles into maps",
-            needed: groups,
-            limit: u32::MAX.into(),
-        })?;
         let told = Told {
             capacity,
             ..self.told
         };
-        let passes = span.drawn(told);
-        passes
-            .map(|told| self.groups(entry, told, groups, buffers))
-            .collect()
+        let (all, parts) = span.drawn(told);
+        let jobs = [
+            (
+                told.triangles.div_ceil(WORKGROUP),
+                span.count().div_ceil(MAPS_AT_ONCE),
+            ),
+            (told.larges.div_ceil(LARGE_AT_ONCE), span.count()),
+        ];
+        let [of_small, of_large] = jobs.map(|(chunks, maps)| self.product(chunks, maps));
+        let mut passes = vec![self.groups(small, all, of_small?, buffers)?];
+        let of_large = of_large?;
+        if of_large > 0 {
+            let large = parts.map(|told| self.groups(large, told, of_large, buffers));
+            passes.extend(large.collect::<Result<Vec<_>, _>>()?);
+        }
+        Ok(passes)
+    }
+
+    fn product(&self, chunks: u32, maps: u32) -> Result<u32, GpuError> {
+        let groups = u64::from(chunks) * u64::from(maps);
+        u32::try_from(groups).map_err(|_| GpuError::Limit {
+            adapter: self.gpu.name.clone(),
+            what: "workgroups that draw triangles into maps",
+            needed: groups,
+            limit: u32::MAX.into(),
+        })
     }
 
     /// Passes that put the end of each run in place of its count.
@@ -158,13 +188,13 @@ impl<'g> Device<'g> {
     }
 }
 
-/// Maps of a workgroup. Corners are read once for all of them, which spares a board most of its
-/// reads; a software driver has them at hand, and a limit of iterations.
-fn at_once(gpu: &Gpu) -> u32 {
-    match gpu.info.device_type {
-        wgpu::DeviceType::Cpu => 1,
-        _ => AT_ONCE,
-    }
+/// Triangles with a box up to so many steps long are drawn by one invocation.
+fn small(pixel: f64) -> i32 {
+    #[expect(clippy::cast_possible_truncation, reason = "below 2^26")]
+    let steps = (SMALL * pixel) as i32;
+    steps
 }
 
-const AT_ONCE: u32 = 8;
+/// Pixels of a small triangle's box along an axis of the lattice, at most; in a map it is at most
+/// sqrt(3) times as long, and one more.
+const SMALL: f64 = 12.0;

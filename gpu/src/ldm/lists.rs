@@ -10,6 +10,12 @@ use super::device::Device;
 use crate::error::GpuError;
 use crate::lists::{LONG, TILE, long_passes};
 
+/// Kernels that count keys, of small triangles and of large ones.
+pub(super) const COUNT: [&str; 2] = ["layers_count", "layers_count_large"];
+
+/// Kernels that write them.
+pub(super) const FILL: [&str; 2] = ["layers_fill", "layers_fill_large"];
+
 /// Kernels that put long lists in order.
 pub(super) const LONGEST: [&str; 2] = ["layers_runs", "layers_merge"];
 
@@ -77,7 +83,7 @@ impl Device<'_> {
             .gpu
             .storage("offsets of pixels", 4 * (u64::from(span.len()) + 1))?;
         let counts = [("counts", &offsets)];
-        let mut time = self.run(&self.draw("layers_count", (&span, 0), &counts)?)?;
+        let mut time = self.run(&self.draw(COUNT, (&span, 0), &counts)?)?;
         let tiles = span.len().div_ceil(TILE);
         let sums = self.gpu.storage("sums of tiles", 4 * u64::from(tiles))?;
         let buffers = [("counts", &offsets), ("sums", &sums)];
@@ -91,7 +97,7 @@ impl Device<'_> {
         }
         let keys = self.gpu.storage("keys of pixels", 4 * u64::from(total))?;
         let buffers = [("counts", &offsets), ("listed", &keys)];
-        time += self.run(&self.draw("layers_fill", (&span, total), &buffers)?)?;
+        time += self.run(&self.draw(FILL, (&span, total), &buffers)?)?;
         let mut batch = Batch {
             span,
             offsets,

@@ -98,7 +98,9 @@ impl<'g> Stages<'g> {
             let nodes = gpu.storage("entries of lists", 8 * u64::from(left))?;
             let counter = gpu.storage("counter", 4)?;
             let buffers = [("heads", &heads), ("nodes", &nodes), ("counter", &counter)];
-            let drawn = self.device.draw("chain", (&span, left), &buffers)?;
+            let drawn = self
+                .device
+                .draw(["chain", "chain_large"], (&span, left), &buffers)?;
             self.time += self.device.run(&drawn)?;
             self.relink(span.told(self.device.told), [&heads, &nodes])?;
             let attempts = self.device.gpu.word(&counter, 0)?;

@@ -10,7 +10,7 @@ use super::Open;
 use super::batch;
 use super::device::Device;
 use super::light::{ASKED, asking, fading, lists};
-use super::lists::{Batch, LONGEST};
+use super::lists::{Batch, COUNT, FILL, LONGEST};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -79,6 +79,7 @@ impl<'g> Timed<'g> {
             opened,
             device,
         };
+        timed.spans[Span::Count as usize].push(timed.device.sizes()?);
         for span in timed.device.batches_of(layers) {
             timed.add(span, layers)?;
         }
@@ -107,14 +108,14 @@ impl<'g> Timed<'g> {
             ("merged", &merged),
             ("sums", &sums),
         ];
-        let mut count = device.draw("layers_count", (&span, 0), &named)?;
+        let mut count = device.draw(COUNT, (&span, 0), &named)?;
         if !count.is_empty() {
             let first = count.remove(0).after_clearing(offsets.clone());
             count.insert(0, first);
         }
         let told = span.told(device.told);
         let mut sort = vec![device.each("layers_sort", told, &named)?];
-        let fill = device.draw("layers_fill", (&span, total), &named)?;
+        let fill = device.draw(FILL, (&span, total), &named)?;
         let scan = device.scan(&span, &named)?;
         let mut swapped = false;
         for (entry, run) in long_passes(LONGEST, longest) {

@@ -37,6 +37,7 @@ impl Sources {
             "march",
             "meet",
             "nearest",
+            "opened",
             "overlap",
             "parameters",
             "place",

@@ -58,12 +58,12 @@ fn chains_in_parts() {
     check.unwrap();
 }
 
-/// The finest maps, with as many large triangles as a workgroup has.
+/// The finest maps, with more large triangles than a workgroup has.
 #[test]
 fn large_triangles() {
     let mut mesh = empty();
-    for i in 0..33 {
-        let z = (i - 16) * 500_000;
+    for i in 0..9 {
+        let z = (i - 4) * 5_000;
         quad(&mut mesh, [-REACH, -REACH], [REACH, REACH], z);
     }
     let sets = [[0.0, 0.0, 1.0], [0.36, 0.48, 0.8]];
