@@ -16,6 +16,7 @@ use triptych_spec::vertex;
 
 use super::gpu::Adapter;
 use super::grid::GridRun;
+use super::ldm::LdmRun;
 use super::rows::Rows;
 use super::rsm::RsmRun;
 use super::run::Run;
@@ -25,6 +26,7 @@ use super::worst::Errors;
 use crate::cache::Uses;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
+use crate::scene::Mistake;
 
 /// A piece of a scene's work. Those of a lane follow each other.
 pub(super) struct Task<'a> {
@@ -53,6 +55,8 @@ pub(super) struct Shared {
     grid: Mutex<Weak<Observed<Spec, GridRun>>>,
     /// Of a scene with indirect light.
     rsm: Mutex<Weak<Observed<Spec, RsmRun>>>,
+    /// Of a scene with maps.
+    ldm: Mutex<Weak<Observed<Spec, LdmRun>>>,
 }
 
 /// What came of a piece of work.
@@ -136,7 +140,8 @@ impl<'a> Run<'a> {
         }
         // Each lane lets go of the spec's results when it goes on to another grid.
         let first: Vec<Self> = lanes.iter().map(|_| self.apart()).collect();
-        (self.spec, self.grid, self.rsm) = (None, None, None);
+        (self.spec, self.grid) = (None, None);
+        (self.rsm, self.ldm) = (None, None);
         let mut parts: Vec<Part<'a>> = thread::scope(|scope| {
             let lanes = lanes.into_values().zip(first);
             let lanes = lanes.map(|(lane, run)| scope.spawn(|| run.lane(lane)));
@@ -186,6 +191,7 @@ impl<'a> Run<'a> {
             spec: self.spec.clone(),
             grid: self.grid.clone(),
             rsm: self.rsm.clone(),
+            ldm: self.ldm.clone(),
             shared: self.shared.clone(),
             rows: Rows::new(&self.loaded.name, &self.loaded.family),
             pictures: Vec::new(),
@@ -204,6 +210,7 @@ impl<'a> Run<'a> {
         self.spec = part.spec.or_else(|| self.spec.take());
         self.grid = part.grid.or_else(|| self.grid.take());
         self.rsm = part.rsm.or_else(|| self.rsm.take());
+        self.ldm = part.ldm.or_else(|| self.ldm.take());
         self.rows.append(part.rows);
         self.pictures.extend(part.pictures);
         self.sheets.extend(part.sheets);
@@ -252,41 +259,46 @@ impl<'a> Run<'a> {
 
     /// The same of a scene with a grid.
     pub(super) fn grid_spec(&mut self) -> Result<Arc<Observed<Spec, GridRun>>, Stop> {
-        if let Some(spec) = &self.grid {
-            return Ok(spec.clone());
-        }
-        let shared = self.shared.clone();
-        let mut grid = locked(&shared.grid);
-        let spec = match grid.upgrade() {
-            Some(spec) => spec,
-            None => {
-                let run = GridRun::new(self.loaded).map_err(Stop::Input)?;
-                Arc::new(Observed::new("spec", run))
-            }
-        };
-        *grid = Arc::downgrade(&spec);
+        let held = self.grid.clone();
+        let spec = shared(held, &self.shared.grid, || GridRun::new(self.loaded))?;
         self.grid = Some(spec.clone());
         Ok(spec)
     }
 
     /// The same of a scene with indirect light.
     pub(super) fn rsm_spec(&mut self) -> Result<Arc<Observed<Spec, RsmRun>>, Stop> {
-        if let Some(spec) = &self.rsm {
-            return Ok(spec.clone());
-        }
-        let shared = self.shared.clone();
-        let mut rsm = locked(&shared.rsm);
-        let spec = match rsm.upgrade() {
-            Some(spec) => spec,
-            None => {
-                let run = RsmRun::new(self.loaded, self.options.skip).map_err(Stop::Input)?;
-                Arc::new(Observed::new("spec", run))
-            }
-        };
-        *rsm = Arc::downgrade(&spec);
+        let (held, skip) = (self.rsm.clone(), self.options.skip);
+        let spec = shared(held, &self.shared.rsm, || RsmRun::new(self.loaded, skip))?;
         self.rsm = Some(spec.clone());
         Ok(spec)
     }
+
+    /// The same of a scene with maps.
+    pub(super) fn ldm_spec(&mut self) -> Result<Arc<Observed<Spec, LdmRun>>, Stop> {
+        let (held, skip) = (self.ldm.clone(), self.options.skip);
+        let spec = shared(held, &self.shared.ldm, || LdmRun::new(self.loaded, skip))?;
+        self.ldm = Some(spec.clone());
+        Ok(spec)
+    }
+}
+
+/// What is held, what another lane holds, or what is computed now: who asks for what another is
+/// at waits for it.
+fn shared<T>(
+    held: Option<Arc<Observed<Spec, T>>>,
+    lanes: &Mutex<Weak<Observed<Spec, T>>>,
+    run: impl FnOnce() -> Result<T, Mistake>,
+) -> Result<Arc<Observed<Spec, T>>, Stop> {
+    if let Some(spec) = held {
+        return Ok(spec);
+    }
+    let mut known = locked(lanes);
+    let spec = match known.upgrade() {
+        Some(spec) => spec,
+        None => Arc::new(Observed::new("spec", run().map_err(Stop::Input)?)),
+    };
+    *known = Arc::downgrade(&spec);
+    Ok(spec)
 }
 
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -10,6 +10,7 @@ use super::facts::Facts;
 use super::gpu::Adapter;
 use super::grid::GridRun;
 use super::lanes::{Shared, Task};
+use super::ldm::LdmRun;
 use super::rows::Rows;
 use super::rsm::RsmRun;
 use super::spec::SpecRun;
@@ -38,6 +39,8 @@ pub(super) struct Run<'a> {
     pub(super) grid: Option<Arc<Observed<Spec, GridRun>>>,
     /// The spec's results of a scene with indirect light.
     pub(super) rsm: Option<Arc<Observed<Spec, RsmRun>>>,
+    /// The spec's results of a scene with maps.
+    pub(super) ldm: Option<Arc<Observed<Spec, LdmRun>>>,
     /// The same, of all lanes.
     pub(super) shared: Arc<Shared>,
     pub(super) rows: Rows,
@@ -61,6 +64,7 @@ impl<'a> Run<'a> {
             spec: None,
             grid: None,
             rsm: None,
+            ldm: None,
             shared: Arc::default(),
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
@@ -79,6 +83,7 @@ impl<'a> Run<'a> {
             Chain::Frame => self.frame()?,
             Chain::Rays => self.grid()?,
             Chain::Indirect => self.rsm()?,
+            Chain::Maps => self.ldm()?,
         }
         if self.rows.rows.is_empty() {
             let reason = "no other leg was asked for".to_owned();
