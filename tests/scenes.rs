@@ -160,13 +160,18 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
     });
     // Compared or skipped for a reason: every stage says what became of it.
     let has = |stage: &str| outcome.passes.iter().any(|pass| pass.name == stage);
-    let chain = match (has("trace"), has("gather")) {
-        (true, _) => Chain::Rays,
-        (_, true) => Chain::Indirect,
+    let chain = match (has("trace"), has("gather"), has("layers")) {
+        (true, ..) => Chain::Rays,
+        (_, true, _) => Chain::Indirect,
+        (.., true) => Chain::Maps,
         _ => Chain::Frame,
     };
     // The folder says what a scene is for.
-    for (family, its_own) in [("grid", Chain::Rays), ("rsm", Chain::Indirect)] {
+    for (family, its_own) in [
+        ("grid", Chain::Rays),
+        ("rsm", Chain::Indirect),
+        ("ldm", Chain::Maps),
+    ] {
         let strange = |r: &Row| (r.family == family) != (chain == its_own);
         if outcome.rows.iter().any(strange) {
             wrong.push(format!(

@@ -1,10 +1,13 @@
 //! A scene of layered depth maps: the family `ldm`.
 
+mod embree;
 mod facts;
 pub mod limits;
 mod setup;
 mod spec;
 mod tally;
+
+use std::time::Instant;
 
 use triptych_gpu::raster::Path;
 
@@ -13,8 +16,12 @@ use super::lanes::Task;
 use super::run::Run;
 use super::stop::Stop;
 use crate::cache::Uses;
+use crate::compare::{Judgement, compare};
+use crate::observe::{Embree, Observed};
+use crate::plan::LdmPlan;
 use crate::registry::{Chain, Twin, stages_of};
 use crate::row::Class;
+pub use embree::{Off, SAMPLES, Seen, ask};
 pub use setup::{Asker, Setup, Turn};
 pub use spec::{LdmRun, LdmTurn, Times};
 pub use tally::Tally;
@@ -27,7 +34,12 @@ impl Run<'_> {
             run.facts = Some(facts::of(run.loaded, &spec.value, run.options.skip));
             Ok(())
         })?;
-        let mut tasks: Vec<Task<'_>> = Vec::new();
+        let mut tasks = Vec::new();
+        if self.options.embree {
+            tasks.push(Task::apart(|run| {
+                run.unit(Uses::Embree, &["ldm", "embree"], Self::ldm_vote)
+            }));
+        }
         if self.options.gpu {
             tasks.extend(self.on_adapters(Self::ldm_leg));
         }
@@ -43,6 +55,38 @@ impl Run<'_> {
                 rows.skip(stage.name, "spec", &label, Class::Exact, why.to_owned());
             }
         }
+        Ok(())
+    }
+
+    /// Embree's vote on stage `layers`, and how far what is open is from what its rays say.
+    fn ldm_vote(&mut self) -> Result<(), Stop> {
+        let plan = LdmPlan::new(self.loaded, self.options.skip);
+        if let Some(reason) = plan.skipped("layers") {
+            let rows = &mut self.rows;
+            rows.skip("layers", "spec", "embree", Class::Vote, reason);
+            return Ok(());
+        }
+        let spec = self.ldm_spec()?;
+        let start = Instant::now();
+        let seen = match ask(&spec.value, self.loaded.file.seed) {
+            Ok(seen) => Observed::<Embree, _>::new("embree", seen).taking(start.elapsed()),
+            Err(error) => {
+                let words = error.to_string();
+                self.rows.fail("layers", "spec", "embree", None, words);
+                return Ok(());
+            }
+        };
+        // What lies near edges hangs on the mesh and on the resolution, and has no share that is
+        // right for all: it is held to one where the scene states it.
+        let budget = self.loaded.file.budget.edge.map(|share| share.0);
+        let judgement = compare(&spec, &seen, |_, seen| {
+            let judgement = seen.vote.judgement(budget);
+            let off = seen.off.map_or(String::new(), |off| format!("; {off}"));
+            let note = format!("{}{off}", judgement.note);
+            Judgement { note, ..judgement }
+        });
+        let times = spec.map(|_| ()).taking(spec.value.times.layers);
+        self.rows.add("layers", &times, &seen, judgement);
         Ok(())
     }
 }

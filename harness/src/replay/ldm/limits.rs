@@ -4,9 +4,9 @@ use rayon::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{Map, Maps};
 use triptych_spec::raster::count;
-use triptych_spec::vertex::Primitives;
 
 use super::setup::Turn;
+use crate::compare::ldm::drawn;
 use crate::replay::work::Meter;
 use crate::scene::Mistake;
 
@@ -66,18 +66,6 @@ pub(super) fn check(blockers: &Blockers, turns: &[Turn]) -> Result<(), Mistake> 
                  smaller resolution or fewer directions"
             ),
         )),
-    }
-}
-
-/// The triangles as a map has them.
-pub fn drawn(maps: &Maps, map: &Map, blockers: &Blockers) -> Primitives {
-    let places = blockers.vertices.iter().map(|v| maps.place(map, *v));
-    Primitives {
-        size: map.size,
-        bits: maps.bits,
-        snapped: places.collect(),
-        prims: blockers.triangles.clone(),
-        source: Vec::new(),
     }
 }
 
