@@ -5,6 +5,7 @@ mod broken;
 mod dumps;
 pub mod embree;
 pub mod end_to_end;
+mod exposure;
 pub mod facts;
 pub mod gpu;
 pub mod grid;

@@ -129,7 +129,8 @@ impl Bare {
 
     /// The same of any ray.
     pub fn all(&self, ray: RTCRay, hits: &mut Vec<Hit>) -> bool {
-        self.intersect(ray, Some(&mut Collector::new(hits))).is_none()
+        self.intersect(ray, Some(&mut Collector::new(hits)))
+            .is_none()
     }
 
     /// One call of `rtcIntersect1`: what Embree finds first.

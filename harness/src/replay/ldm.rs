@@ -1,11 +1,15 @@
 //! A scene of layered depth maps: the family `ldm`.
 
+mod cloud;
 mod embree;
 mod facts;
 pub mod limits;
+mod pictures;
 mod setup;
 mod spec;
 mod tally;
+#[cfg(test)]
+mod tests;
 
 use std::time::Instant;
 
@@ -32,7 +36,10 @@ impl Run<'_> {
         self.unit(Uses::Nothing, &["ldm", "spec"], |run| {
             let spec = run.ldm_spec()?;
             run.facts = Some(facts::of(run.loaded, &spec.value, run.options.skip));
-            Ok(())
+            if run.options.pictures {
+                run.pictures.extend(pictures::spec(run.loaded, &spec.value));
+            }
+            run.dump_ldm_spec(&spec).map_err(Stop::Dump)
         })?;
         let mut tasks = Vec::new();
         if self.options.embree {

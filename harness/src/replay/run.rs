@@ -89,9 +89,11 @@ impl<'a> Run<'a> {
             let reason = "no other leg was asked for".to_owned();
             self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
-        let causes = match &self.rsm {
-            Some(spec) => spec.value.causes(&self.rows.spots),
-            None => pictures::causes(self.spec.as_deref(), &self.rows.spots),
+        let spots = &self.rows.spots;
+        let causes = match (&self.rsm, &self.ldm) {
+            (Some(spec), _) => spec.value.causes(spots),
+            (_, Some(spec)) => spec.value.causes(spots),
+            (None, None) => pictures::causes(self.spec.as_deref(), spots),
         };
         self.pictures
             .extend(causes.filter(|_| self.options.pictures));

@@ -286,7 +286,9 @@ impl<'j, E: RayLists> OfPixel<'j, E> {
             }
             let known = (hit.prim as usize) < self.judge.blockers.triangles.len();
             match known && matches!(self.of_ray(hit.prim), Pair::Edge(_)) {
-                true => (self.vote.pairs, self.vote.edge) = (self.vote.pairs + 1, self.vote.edge + 1),
+                true => {
+                    (self.vote.pairs, self.vote.edge) = (self.vote.pairs + 1, self.vote.edge + 1)
+                }
                 false => self.wrong.push(MapConflict::Invented { prim: hit.prim }),
             }
         }

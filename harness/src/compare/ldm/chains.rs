@@ -21,7 +21,9 @@ pub fn chains(maps: &Maps, spec: &Layers, seen: &Chains) -> Judgement {
     if u64::from(seen.attempts) != needed || seen.links.len() as u64 != stored {
         judgement.differs(Cause::Overflow, None, || {
             let (attempts, links) = (seen.attempts, seen.links.len());
-            format!("{attempts} entries asked for and {links} stored, must be {needed} and {stored}")
+            format!(
+                "{attempts} entries asked for and {links} stored, must be {needed} and {stored}"
+            )
         });
     }
     let certificate = certify(&lists(seen));

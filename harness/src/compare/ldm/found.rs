@@ -50,10 +50,7 @@ pub fn open(pixels: &[u32], spec: &[Open], seen: &[(u32, f32)]) -> Judgement {
         let pixel = pixels.get(at).copied();
         if must.whole != *whole {
             judgement.differs(Cause::Coverage, pixel, || {
-                format!(
-                    "{whole} is open over receiver {at}, must be {}",
-                    must.whole
-                )
+                format!("{whole} is open over receiver {at}, must be {}", must.whole)
             });
             continue;
         }

@@ -16,6 +16,10 @@ pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
     let directions = u64::from(setup.directions) * u64::from(setup.rotations);
     let receivers = setup.receivers.len();
     let open = (0..receivers).filter(|i| run.open[*i].whole == run.weights(*i));
+    let needed = format!(
+        "{} of {directions} directions by the receivers' normals",
+        tally.maps
+    );
     let counts = vec![
         (
             "size",
@@ -32,10 +36,10 @@ pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
         ),
         (
             "needed",
-            format!(
-                "{} of {directions} directions by the receivers' normals, {} of them without light",
-                tally.maps, tally.dark
-            ),
+            match run.lit {
+                true => format!("{needed}, {} of them without light", tally.dark),
+                false => needed,
+            },
         ),
         ("resolution", setup.resolution.to_string()),
         (
@@ -51,7 +55,10 @@ pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
         ),
         (
             "receivers",
-            format!("{receivers}, {} of them with nothing in the way", open.count()),
+            format!(
+                "{receivers}, {} of them with nothing in the way",
+                open.count()
+            ),
         ),
         (
             "hits",

@@ -205,8 +205,9 @@ fn far_in_steps(lattice: &Lattice, far: f64, power: u32) -> Result<Falloff, Mist
     match placed::steps(lattice, far).min(FAR_MAX) {
         0 => {
             let least = libm::scalbn(0.5, lattice.exponent);
-            let message =
-                format!("{far:e} is less than half a step of the lattice; {least:.3e} or more is right");
+            let message = format!(
+                "{far:e} is less than half a step of the lattice; {least:.3e} or more is right"
+            );
             Err(Mistake::of("ldm.far", message))
         }
         most => Ok(Falloff::Distance {

@@ -13,7 +13,9 @@ use super::limits;
 use super::setup::{Setup, Turn};
 use super::tally::Tally;
 use crate::plan::LdmPlan;
+use crate::replay::rows::Spot;
 use crate::replay::spec::timed;
+use crate::report::Picture;
 use crate::scene::{Loaded, Mistake};
 
 /// Everything that the spec says about a scene with maps.
@@ -123,6 +125,13 @@ impl LdmRun {
             picture[asker.pixel as usize] = [lit(0), lit(1), lit(2)];
         }
         picture
+    }
+}
+
+impl LdmRun {
+    /// Which pixels differ, and why; `None` if none does.
+    pub fn causes(&self, spots: &[Spot]) -> Option<Picture> {
+        super::pictures::causes(self, spots)
     }
 }
 

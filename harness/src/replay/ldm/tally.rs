@@ -52,7 +52,11 @@ impl Tally {
             self.before += u64::from(hits.before.is_some());
             self.behind += u64::from(hits.behind.is_some());
             let side = |key: Option<u32>| key.unwrap_or(NOTHING);
-            let all = [hits.key.cast_unsigned(), side(hits.before), side(hits.behind)];
+            let all = [
+                hits.key.cast_unsigned(),
+                side(hits.before),
+                side(hits.behind),
+            ];
             words(&mut self.found, all.into_iter());
         }
     }

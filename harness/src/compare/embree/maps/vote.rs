@@ -148,7 +148,10 @@ impl fmt::Display for MapDisagreement {
             MapConflict::Order => write!(f, "the list does not rise"),
             MapConflict::Key { key } => write!(f, "no triangle explains key {key}"),
             MapConflict::Lost { low, high } => {
-                write!(f, "a triangle with a key from {low:.1} to {high:.1} is lost")
+                write!(
+                    f,
+                    "a triangle with a key from {low:.1} to {high:.1} is lost"
+                )
             }
         }
     }
