@@ -170,7 +170,7 @@ pub const CASES: &[Case] = &[
     ("ldm-far.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nfar = 0\n", Fails(":5: ldm.far: 0 is no distance to look; leave it out, or state a longer one")),
     ("ldm-far-1.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nfar = -1\n", Fails(":5: -1 is no length: 0 or more is right")),
     ("ldm-offset.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\noffset = 1\n", Fails(":5: 1 is outside 2 to 64")),
-    ("ldm-sky.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nsky = {}\n", Fails(":5: expected table with exactly 1 entry, found empty table")),
+    ("ldm-sky.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nsky = {}\n", Fails(":5: wanted exactly 1 element, found 0 elements")),
     ("ldm-sky-kind.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nsky.sun = 1\n", Fails(":5: unknown variant `sun`, expected one of `constant`, `gradient`, `image`")),
     ("ldm-sky-constant.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nsky.constant = [1, -1, 1]\n", Fails(":5: -1 is outside 0 to 1e6")),
     ("ldm-sky-gradient.toml", b"purpose = 'x'\nsize = [8, 8]\nmesh = []\n[ldm]\nsky.gradient = { zenith = [1, 1, 1] }\n", Fails(":5: missing field `nadir`")),

@@ -4,15 +4,15 @@
 //! nothing but the spec's results, so what comes out, and in which order, is the same as if all
 //! pieces had run one after another; only times are those of a machine that has more to do.
 
+mod specs;
 #[cfg(test)]
 mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Mutex, Weak};
 use std::thread;
 
 use triptych_gpu::raster::Path;
-use triptych_spec::vertex;
 
 use super::gpu::Adapter;
 use super::grid::GridRun;
@@ -20,13 +20,12 @@ use super::ldm::LdmRun;
 use super::rows::Rows;
 use super::rsm::RsmRun;
 use super::run::Run;
-use super::spec::{SpecRun, Times, timed};
+use super::spec::SpecRun;
 use super::stop::Stop;
 use super::worst::Errors;
 use crate::cache::Uses;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
-use crate::scene::Mistake;
 
 /// A piece of a scene's work. Those of a lane follow each other.
 pub(super) struct Task<'a> {
@@ -219,88 +218,4 @@ impl<'a> Run<'a> {
         self.saved.extend(part.saved);
         self.remarks.extend(part.remarks);
     }
-
-    /// The spec's results on a grid, computed when first asked for. Only the last grid's are
-    /// held: they are large.
-    pub(super) fn spec(&mut self, bits: u32) -> Result<Arc<Observed<Spec, SpecRun>>, Stop> {
-        let held = self.spec.as_ref();
-        if let Some(spec) = held.filter(|s| s.value.primitives.bits == bits) {
-            return Ok(spec.clone());
-        }
-        self.spec = None;
-        let shared = self.shared.clone();
-        // A lane that asks for what another is at waits for it.
-        let mut specs = locked(&shared.specs);
-        let known = specs.get(&bits).and_then(Weak::upgrade);
-        let spec = match known {
-            Some(spec) => spec,
-            None => Arc::new(self.new_spec(bits)?),
-        };
-        specs.insert(bits, Arc::downgrade(&spec));
-        self.spec = Some(spec.clone());
-        Ok(spec)
-    }
-
-    fn new_spec(&self, bits: u32) -> Result<Observed<Spec, SpecRun>, Stop> {
-        let scene = &self.loaded.scene;
-        let (positions, transform) = timed(|| vertex::transform(scene));
-        let (polygons, clip) = timed(|| vertex::clip(scene, &positions));
-        let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
-        let mut run = SpecRun::new(scene, primitives, &self.plan)
-            .map_err(|words| Stop::Input(words.into()))?;
-        run.times = Times {
-            transform,
-            clip,
-            snap,
-            ..run.times
-        };
-        Ok(Observed::new("spec", run))
-    }
-
-    /// The same of a scene with a grid.
-    pub(super) fn grid_spec(&mut self) -> Result<Arc<Observed<Spec, GridRun>>, Stop> {
-        let held = self.grid.clone();
-        let spec = shared(held, &self.shared.grid, || GridRun::new(self.loaded))?;
-        self.grid = Some(spec.clone());
-        Ok(spec)
-    }
-
-    /// The same of a scene with indirect light.
-    pub(super) fn rsm_spec(&mut self) -> Result<Arc<Observed<Spec, RsmRun>>, Stop> {
-        let (held, skip) = (self.rsm.clone(), self.options.skip);
-        let spec = shared(held, &self.shared.rsm, || RsmRun::new(self.loaded, skip))?;
-        self.rsm = Some(spec.clone());
-        Ok(spec)
-    }
-
-    /// The same of a scene with maps.
-    pub(super) fn ldm_spec(&mut self) -> Result<Arc<Observed<Spec, LdmRun>>, Stop> {
-        let (held, skip) = (self.ldm.clone(), self.options.skip);
-        let spec = shared(held, &self.shared.ldm, || LdmRun::new(self.loaded, skip))?;
-        self.ldm = Some(spec.clone());
-        Ok(spec)
-    }
-}
-
-/// What is held, what another lane holds, or what is computed now: who asks for what another is
-/// at waits for it.
-fn shared<T>(
-    held: Option<Arc<Observed<Spec, T>>>,
-    lanes: &Mutex<Weak<Observed<Spec, T>>>,
-    run: impl FnOnce() -> Result<T, Mistake>,
-) -> Result<Arc<Observed<Spec, T>>, Stop> {
-    if let Some(spec) = held {
-        return Ok(spec);
-    }
-    let mut known = locked(lanes);
-    let spec = match known.upgrade() {
-        Some(spec) => spec,
-        None => Arc::new(Observed::new("spec", run().map_err(Stop::Input)?)),
-    };
-    *known = Arc::downgrade(&spec);
-    Ok(spec)
-}
-
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -10,6 +10,14 @@ use crate::scene::Loaded;
 
 /// The facts of a scene with maps; counts and hashes are over all rotations.
 pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
+    Facts {
+        counts: counts(loaded, run),
+        runs: runs(&crate::replay::passes(loaded, skip)),
+        hashes: hashes(run),
+    }
+}
+
+fn counts(loaded: &Loaded, run: &LdmRun) -> Vec<(&'static str, String)> {
     let setup = &run.setup;
     let tally = &run.tally;
     let [seen, blocking] = loaded.parts();
@@ -20,7 +28,7 @@ pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
         "{} of {directions} directions by the receivers' normals",
         tally.maps
     );
-    let counts = vec![
+    vec![
         (
             "size",
             format!("{} x {}", setup.eye.size.width, setup.eye.size.height),
@@ -64,8 +72,11 @@ pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
             "hits",
             format!("{} before, {} behind", tally.before, tally.behind),
         ),
-    ];
-    let receivers = setup.receivers.iter().flat_map(|asker| {
+    ]
+}
+
+fn hashes(run: &LdmRun) -> BTreeMap<&'static str, String> {
+    let receivers = run.setup.receivers.iter().flat_map(|asker| {
         let mut words = vec![asker.pixel, asker.triangle];
         words.extend(asker.receiver.point.map(i32::cast_unsigned));
         words.extend(asker.receiver.normal.map(i32::cast_unsigned));
@@ -87,12 +98,8 @@ pub(super) fn of(loaded: &Loaded, run: &LdmRun, skip: bool) -> Facts {
     if run.lit {
         hashes.insert("picture", hash(run.picture().iter().flatten().map(fixed)));
     }
-    hashes.extend(tally.hashes());
-    Facts {
-        counts,
-        runs: runs(&crate::replay::passes(loaded, skip)),
-        hashes,
-    }
+    hashes.extend(run.tally.hashes());
+    hashes
 }
 
 /// In steps of 2^-16: an integer.
