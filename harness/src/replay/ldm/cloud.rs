@@ -110,7 +110,7 @@ fn cloud(
                 points += 1;
                 // Two by two pixels, or they are lost in the picture.
                 let width = size.width as usize;
-                let right = at + usize::from((at + 1) % width != 0);
+                let right = at + usize::from(!(at + 1).is_multiple_of(width));
                 let below = |at: usize| Some(at + width).filter(|at| *at < seen.keys.len());
                 let all = [Some(at), Some(right), below(at), below(right)];
                 all.into_iter().flatten().for_each(&mut draw);
