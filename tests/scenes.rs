@@ -159,21 +159,8 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
             .collect::<Vec<_>>()
     });
     // Compared or skipped for a reason: every stage says what became of it.
-    let has = |stage: &str| outcome.passes.iter().any(|pass| pass.name == stage);
-    let chain = match (has("trace"), has("gather")) {
-        (true, _) => Chain::Rays,
-        (_, true) => Chain::Indirect,
-        _ => Chain::Frame,
-    };
-    // The folder says what a scene is for.
-    for (family, its_own) in [("grid", Chain::Rays), ("rsm", Chain::Indirect)] {
-        let strange = |r: &Row| (r.family == family) != (chain == its_own);
-        if outcome.rows.iter().any(strange) {
-            wrong.push(format!(
-                "a scene has [{family}] if and only if its family is {family}"
-            ));
-        }
-    }
+    let chain = chain_of(outcome);
+    wrong.extend(misplaced(outcome, chain));
     let all = adapters
         .iter()
         .flat_map(|a| stages_of(chain).map(move |s| (a, s)));
@@ -206,6 +193,32 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
         }
     }
     wrong
+}
+
+/// As what a scene was replayed, by its passes.
+fn chain_of(outcome: &Outcome) -> Chain {
+    let has = |stage: &str| outcome.passes.iter().any(|pass| pass.name == stage);
+    match (has("trace"), has("gather"), has("layers")) {
+        (true, ..) => Chain::Rays,
+        (_, true, _) => Chain::Indirect,
+        (.., true) => Chain::Maps,
+        _ => Chain::Frame,
+    }
+}
+
+/// The folder says what a scene is for.
+fn misplaced(outcome: &Outcome, chain: Chain) -> Vec<String> {
+    let own = [
+        ("grid", Chain::Rays),
+        ("rsm", Chain::Indirect),
+        ("ldm", Chain::Maps),
+    ];
+    let strange = |(family, its_own): &(&str, Chain)| {
+        let mut rows = outcome.rows.iter();
+        rows.any(|r| (r.family == *family) != (chain == *its_own))
+    };
+    let told = |(name, _)| format!("a scene has [{name}] if and only if its family is {name}");
+    own.into_iter().filter(strange).map(told).collect()
 }
 
 fn describe(row: &Row) -> String {

@@ -6,6 +6,7 @@ pub mod fragments;
 pub mod grid;
 pub mod handed;
 pub mod image;
+pub mod ldm;
 pub mod lists;
 pub mod moved;
 pub mod opaque;

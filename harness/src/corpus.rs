@@ -13,7 +13,7 @@ pub struct Entry {
     /// `family/case` in the corpus; outside it the file's stem, or as much of its
     /// path as tells it apart.
     pub name: String,
-    /// `raster`, `abuffer`, `grid` or `rsm`; files outside the corpus count as `abuffer`, the
+    /// `raster`, `abuffer`, `grid`, `rsm` or `ldm`; files outside the corpus count as `abuffer`, the
     /// family that runs every stage.
     pub family: String,
     /// The scene.toml, or a bare mesh.

@@ -32,9 +32,23 @@
 //! | `rsm-F/bits` | u32, h × w × words | of a pixel of buffer B: bit `i` says that texel `i` of its kernel is blocked |
 //! | `rsm-F/intensity`, `direct`, `all`, `blocked`, `blurred` | f32, h × w × 3 | linear: the map's, direct light, buffers A and B, B blurred |
 //! | `rsm-F/image` | | the picture |
+//! | `ldm/lattice` | f64, 4 | as `grid/lattice` |
+//! | `ldm/triangles` | i32, m × 3 × 3 | corners of what is in the maps, in lattice steps |
+//! | `ldm/pixel`, `ldm/point`, `ldm/normal` | u32, r; i32, r × 3 | of each receiver: row-major pixel, point in steps, normal of length 2^14 |
+//! | `ldm/openness` | | what is open, as a grey picture |
+//! | `ldm/image` | | the picture by the light of the sky, if there is one |
+//! | `ldm-F/directions` | f64, n × 3 | of rotation F, from 1: the maps' unit vectors, to whom each is seen by |
+//! | `ldm-F/rows` | i32, n × 3 × 3 | what a point is multiplied by for its column, row and key |
+//! | `ldm-F/shifts` | u32, 3 | by how many bits the first two are shifted down, and the third; sub-pixel bits |
+//! | `ldm-F/maps` | i32, n × 6 | origin in sub-pixels and keys, columns, rows, number of the first pixel |
+//! | `ldm-F/offsets` | u64, pixels + 1 | where each pixel's list starts, map by map |
+//! | `ldm-F/depth` | u32, k | depth keys, rising in each list |
+//! | `ldm-F/hits` | i32, r × n × 3 | of each receiver in each map: its own key, the key before it and the one behind it; -1 for none. Left out where there are more than 2^24 |
+//! | `ldm-F/whole` | u32, r | the sum of the weights of what is open, in 2^-19 |
 //! | `<stage>/<image>` | f32, h × w × 3 | linear colours; also `.exr` and `.png` |
 
 mod grid;
+mod ldm;
 mod name;
 mod rsm;
 mod stages;
@@ -50,6 +64,7 @@ use triptych_spec::scene::Size;
 
 use crate::picture;
 pub use grid::{GridArrays, GridHit};
+pub use ldm::{MapArrays, TurnArrays};
 use name::component;
 pub use rsm::{FrameArrays, FrameShape};
 

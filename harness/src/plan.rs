@@ -107,6 +107,7 @@ pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
         Chain::Frame => Plan::new(&loaded.scene, skip).passes,
         Chain::Rays => GridPlan::new(loaded, skip).passes,
         Chain::Indirect => RsmPlan::new(loaded, skip).passes,
+        Chain::Maps => LdmPlan::new(loaded, skip).passes,
     }
 }
 
@@ -179,6 +180,51 @@ impl RsmPlan {
         };
         Self {
             passes: stages_of(Chain::Indirect).map(pass).collect(),
+        }
+    }
+
+    /// Why a pass does not run; `None` if it does.
+    pub fn skipped(&self, name: &str) -> Option<String> {
+        let pass = self.passes.iter().find(|p| p.name == name)?;
+        (!pass.runs).then(|| format!("plan: {}", pass.reason))
+    }
+}
+
+/// What a scene with an `[ldm]` needs. Which directions its receivers' normals need is known only
+/// once they are seen: the spec's facts count those that are left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LdmPlan {
+    /// Every pass of the family, in order.
+    pub passes: Vec<Pass>,
+}
+
+impl LdmPlan {
+    /// Without surfaces nobody asks what is open; without blockers there is nothing in any map,
+    /// and everything is; without a sky there is no light.
+    pub fn new(loaded: &Loaded, skip: bool) -> Self {
+        let [seen, blocking] = loaded.parts();
+        let maps = loaded.file.ldm.as_ref().map_or(0, |l| l.get_ref().maps());
+        let needed = |name: &str| match name {
+            _ if seen == 0 => Err("nothing is seen"),
+            "environment" if loaded.sky.is_none() => Err("there is no sky"),
+            "layers" | "chain" | "neighbours" if blocking == 0 => Err("nothing blocks"),
+            "layers" | "chain" => Ok(format!("{blocking} triangles in {maps} maps")),
+            _ => Ok(format!("{seen} triangles are seen")),
+        };
+        let pass = |stage: &crate::registry::Stage| {
+            let needed = needed(stage.name);
+            Pass {
+                name: stage.name,
+                runs: needed.is_ok() || !skip,
+                reason: match (needed, skip) {
+                    (Ok(why), _) => why,
+                    (Err(why), true) => why.to_owned(),
+                    (Err(why), false) => format!("{why}, but nothing is skipped"),
+                },
+            }
+        };
+        Self {
+            passes: stages_of(Chain::Maps).map(pass).collect(),
         }
     }
 

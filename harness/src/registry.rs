@@ -5,7 +5,7 @@
 //! is absent, and no stage of the spec and no entry point is missing here.
 
 /// A group of stages with one stem everywhere: `spec/src/F.rs`, `gpu/src/F.rs`,
-/// `gpu/src/F.wgsl`, `tests/laws/F.rs`, `corpus/F`.
+/// `gpu/src/F.wgsl` (those two once a stage has a twin), `tests/laws/F.rs`, `corpus/F`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Family {
     /// The stem.
@@ -27,6 +27,8 @@ pub enum Chain {
     Rays,
     /// Indirect light and its shadows: a scene with an `[rsm]`.
     Indirect,
+    /// Layered depth maps: a scene with an `[ldm]`.
+    Maps,
 }
 
 /// A stage. Its name is that of the spec's function, of its pass in a plan, and of the
@@ -134,6 +136,18 @@ pub const FAMILIES: &[Family] = &[
         ],
         no_corpus: None,
     },
+    Family {
+        name: "ldm",
+        chain: Chain::Maps,
+        stages: &[
+            of_maps("layers"),
+            of_maps("chain"),
+            of_maps("neighbours"),
+            of_maps("occlusion"),
+            of_maps("environment"),
+        ],
+        no_corpus: None,
+    },
 ];
 
 /// Kernels that are no stage of a replay: `triptych bench` compares and measures them.
@@ -218,6 +232,14 @@ const fn of_pixels(name: &'static str, entries: &'static [&'static str]) -> Stag
     }
 }
 
+const fn of_maps(name: &'static str) -> Stage {
+    Stage {
+        name,
+        compute: Twin::None("no kernel yet"),
+        fragment: Twin::None("works on maps, pixels and points, in compute kernels"),
+    }
+}
+
 /// The stages of a chain, in the order in which they run.
 pub fn stages_of(chain: Chain) -> impl Iterator<Item = &'static Stage> {
     let families = FAMILIES.iter().filter(move |family| family.chain == chain);
@@ -232,6 +254,14 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
 /// Whether a result row may be called so.
 pub fn names_row(name: &str) -> bool {
     stages().any(|stage| stage.name == name) || ROWS.iter().any(|(row, _)| *row == name)
+}
+
+impl Family {
+    /// Whether any of its stages runs on a GPU.
+    pub fn has_twins(&self) -> bool {
+        let twins = self.stages.iter().flat_map(|s| [s.compute, s.fragment]);
+        twins.into_iter().any(|twin| !twin.entries().is_empty())
+    }
 }
 
 impl Twin {

@@ -5,14 +5,17 @@ mod broken;
 mod dumps;
 pub mod embree;
 pub mod end_to_end;
+mod exposure;
 pub mod facts;
 pub mod gpu;
 pub mod grid;
 mod hardware;
 mod lanes;
+pub mod ldm;
 mod legs;
 mod own_vertices;
 pub mod pictures;
+mod placed;
 pub mod rows;
 pub mod rsm;
 mod run;
@@ -175,7 +178,8 @@ pub fn replay_grid(
 }
 
 impl Outcome {
-    /// Whether the scene is not rasterised by drivers: it has a `[grid]` or an `[rsm]`.
+    /// Whether the scene is not rasterised by drivers: it has a `[grid]`, an `[rsm]` or an
+    /// `[ldm]`.
     pub fn runs_kernels_alone(&self) -> bool {
         let frame: Vec<&str> = stages_of(Chain::Frame).map(|stage| stage.name).collect();
         let is_of_frame = |pass: &Pass| frame.contains(&pass.name);

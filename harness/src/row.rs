@@ -32,7 +32,7 @@ pub enum Class {
 pub struct Row {
     /// `family/case`.
     pub scene: String,
-    /// `raster`, `abuffer`, `grid` or `rsm`, the scene's folder.
+    /// `raster`, `abuffer`, `grid`, `rsm` or `ldm`, the scene's folder.
     pub family: String,
     /// Stage, such as `cover` or `build`.
     pub stage: String,

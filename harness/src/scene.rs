@@ -5,9 +5,11 @@ pub mod file;
 mod fit;
 mod flatten;
 pub mod grid;
+pub mod ldm;
 mod mistake;
 pub mod rsm;
 mod shade;
+pub mod sky;
 mod source;
 mod surface;
 #[cfg(test)]
@@ -26,6 +28,7 @@ use crate::mesh::Intake;
 use crate::text::{self, hex};
 use file::SceneFile;
 pub use mistake::{Lines, Mistake};
+use sky::Sky;
 use world::World;
 
 /// Largest scene.toml in bytes. Parsing takes up to a hundred times as much memory.
@@ -49,7 +52,7 @@ mesh = []
 pub struct Loaded {
     /// `family/case`.
     pub name: String,
-    /// `raster`, `abuffer`, `grid` or `rsm`.
+    /// `raster`, `abuffer`, `grid`, `rsm` or `ldm`.
     pub family: String,
     /// The scene as written.
     pub file: SceneFile,
@@ -61,6 +64,8 @@ pub struct Loaded {
     pub scene: Scene,
     /// The same before the camera.
     pub world: World,
+    /// Light from all around, if `[ldm]` states one.
+    pub sky: Option<Sky>,
     /// What was loaded.
     pub stats: Stats,
 }
@@ -192,6 +197,9 @@ fn of_parsed(
     digest.update(parsed.file.seed.to_le_bytes());
     grid::check(&parsed)?;
     rsm::check(&parsed)?;
+    ldm::check(&parsed)?;
+    ldm::settle(&mut parsed.file);
+    let sky = sky::load(intake, &parsed, &mut digest)?;
     let mut meshes = source::load_all(intake, &parsed, &mut digest)?;
     rsm::check_meshes(&parsed, &meshes)?;
     let (scene, world) = flatten::flatten(&parsed, &mut meshes)?;
@@ -205,6 +213,7 @@ fn of_parsed(
         file: parsed.file,
         scene,
         world,
+        sky,
         stats,
     })
 }
@@ -258,7 +267,7 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
         }
     })?;
     // Other families are judged where they are read, and a bare mesh has no lines.
-    let keys = match file.grid.is_some() || file.rsm.is_some() {
+    let keys = match file.grid.is_some() || file.rsm.is_some() || file.ldm.is_some() {
         true => Lines::new(text, |at| line_of(&lines, at)),
         false => Lines::default(),
     };

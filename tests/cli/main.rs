@@ -12,6 +12,7 @@ mod frames;
 mod grids;
 mod kernel;
 mod legs;
+mod maps;
 mod measured;
 mod mistakes;
 mod mutants;

@@ -181,7 +181,11 @@ fn scenes_beyond_a_limit_of_their_family() {
     place
         .write("clamp/scene.toml", &of("rsm.clamp = 1e300\n"))
         .write("far/scene.toml", &of("rsm.reference = 1e300\n"))
-        .write("rays/scene.toml", &grid);
+        .write("rays/scene.toml", &grid)
+        .write(
+            "short/scene.toml",
+            &format!("{start}[ldm]\nfar = 1e-9\n{quads}"),
+        );
     for (scene, parts) in [
         (
             "clamp",
@@ -202,6 +206,13 @@ fn scenes_beyond_a_limit_of_their_family() {
             [
                 "rays/scene.toml:7: grid.rays: 12582912 rays pass more than ",
                 "ask for fewer rays",
+            ],
+        ),
+        (
+            "short",
+            [
+                "short/scene.toml:4: ldm.far: 1e-9 is less than half a step",
+                "or more is right",
             ],
         ),
     ] {

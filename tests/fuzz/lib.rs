@@ -12,6 +12,7 @@ use triptych_harness::mesh::{self, Intake, Mesh};
 use triptych_harness::rays::Kind;
 use triptych_harness::registry::Chain;
 use triptych_harness::replay::grid::{GridRun, blockers};
+use triptych_harness::replay::ldm::LdmRun;
 use triptych_harness::replay::rsm::{RsmRun, Setup};
 use triptych_harness::scene::{self, LoadError, Loaded, Mistake};
 
@@ -62,9 +63,10 @@ fn mesh(name: &str, files: &BTreeMap<PathBuf, Vec<u8>>) -> Result<Mesh, InputErr
     mesh::load(&mut Intake::from_memory(files), path, files[path].clone())
 }
 
-/// A scene file, with two meshes and a library that it may name.
+/// A scene file, with two meshes, a library and two skies that it may name.
 pub fn scene(bytes: &[u8]) -> Result<Loaded, LoadError> {
-    let files = files(&["scene.toml", "a.obj", "a.mtl", "a.ply"], bytes);
+    let names = ["scene.toml", "a.obj", "a.mtl", "a.ply", "a.hdr", "a.exr"];
+    let files = files(&names, bytes);
     let entry = Entry {
         name: "fuzz".to_owned(),
         family: "abuffer".to_owned(),
@@ -98,6 +100,7 @@ pub fn judge_scene(loaded: Result<Loaded, LoadError>) {
                 Chain::Frame => Ok(()),
                 Chain::Rays => rays(&loaded),
                 Chain::Indirect => indirect(&loaded),
+                Chain::Maps => maps(&loaded),
             };
             replayed.err().iter().for_each(one_line);
         }
@@ -137,6 +140,23 @@ fn indirect(loaded: &Loaded) -> Result<(), Mistake> {
     for frame in &run.frames {
         let numbers = frame.frame.picture.iter().flatten();
         assert!(numbers.into_iter().all(|c| !c.value.is_nan()), "a colour");
+    }
+    Ok(())
+}
+
+/// The same of layered depth maps: a lattice with who asks on it, and what is open.
+fn maps(loaded: &Loaded) -> Result<(), Mistake> {
+    let ldm = loaded.file.ldm.as_ref().map(|ldm| ldm.get_ref());
+    let maps = ldm.map_or(0, |ldm| u64::from(ldm.maps()));
+    let side = ldm.map_or(0, |ldm| u64::from(ldm.resolution.0));
+    let pixels = loaded.scene.size.pixels() as u64;
+    if loaded.scene.triangles.len() > 64 || maps * (pixels + side * side) > 1 << 18 {
+        return Ok(());
+    }
+    let run = LdmRun::new(loaded, true)?;
+    for (open, light) in run.openness.iter().zip(&run.light) {
+        assert!((0.0..2.0).contains(&open.value), "a part of the hemisphere");
+        assert!(light.iter().all(|c| c.value >= 0.0), "light");
     }
     Ok(())
 }

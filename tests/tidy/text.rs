@@ -26,7 +26,7 @@ const MACHINE: [&str; 4] = [
 ];
 
 /// Endings of files that are not text.
-const BINARY: [&str; 5] = ["png", "gz", "exr", "npy", "ico"];
+const BINARY: [&str; 6] = ["png", "gz", "exr", "hdr", "npy", "ico"];
 
 fn code() -> Vec<File> {
     let mut files = files();

@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
             Ok(outcome) => {
                 if let Some(options) = idle.take_if(|_| outcome.runs_kernels_alone()) {
                     let remark =
-                        format!("without effect on scenes with [grid] or [rsm]: {options}");
+                        format!("without effect on scenes with [grid], [rsm] or [ldm]: {options}");
                     results.reporter.remark(&remark)?;
                 }
                 if args.snapshot {

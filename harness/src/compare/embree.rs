@@ -27,6 +27,7 @@
 mod band;
 mod edge;
 mod known;
+mod maps;
 mod order;
 mod pair;
 mod pairs;
@@ -43,6 +44,7 @@ use crate::embree::world::World;
 use crate::embree::{EmbreeError, RayHits, ScreenHits};
 use band::judge;
 use known::Shares;
+pub use maps::{MapConflict, MapDisagreement, MapVote, Sampled, compare_maps};
 pub use pair::{DepthPair, Pair, pair};
 use pairs::Pairs;
 pub use rays::{OfKind, RayConflict, RayDisagreement, RayVote, compare_kinds, compare_rays};

@@ -124,8 +124,13 @@ impl Bare {
     /// a hit went past the filter.
     pub fn trace(&self, [column, row]: [u32; 2], bits: u32, hits: &mut Vec<Hit>) -> bool {
         // A hit that is rejected is not written back.
-        let found = self.intersect(ray(column, row, bits), Some(&mut Collector::new(hits)));
-        found.is_none()
+        self.all(ray(column, row, bits), hits)
+    }
+
+    /// The same of any ray.
+    pub fn all(&self, ray: RTCRay, hits: &mut Vec<Hit>) -> bool {
+        self.intersect(ray, Some(&mut Collector::new(hits)))
+            .is_none()
     }
 
     /// One call of `rtcIntersect1`: what Embree finds first.

@@ -32,6 +32,15 @@ pub trait RayAnswers: Sync {
     fn check(&self) -> Result<(), EmbreeError>;
 }
 
+/// An observation of all that lies along rays: Embree's, or a test's corruption of it.
+pub trait RayLists: Sync {
+    /// Adds every triangle that the ray meets, once, in order of triangles.
+    ///
+    /// # Errors
+    /// The first error that Embree reports.
+    fn all(&self, ray: &Ray, hits: &mut Vec<Hit>) -> Result<(), EmbreeError>;
+}
+
 /// Blockers, committed to Embree.
 pub struct RayScene {
     /// Absent if there are no triangles: Embree refuses empty buffers.
@@ -76,6 +85,23 @@ impl RayAnswers for RayScene {
 
     fn check(&self) -> Result<(), EmbreeError> {
         self.scene.as_ref().map_or(Ok(()), Bare::check)
+    }
+}
+
+impl RayLists for RayScene {
+    fn all(&self, ray: &Ray, hits: &mut Vec<Hit>) -> Result<(), EmbreeError> {
+        let Some(scene) = &self.scene else {
+            return Ok(());
+        };
+        let from = hits.len();
+        if !scene.all(traced(ray), hits) {
+            return Err(EmbreeError::new("ray", "a hit went past the filter"));
+        }
+        scene.check()?;
+        // A triangle that is in several leaves of the tree is reported in each.
+        hits[from..].sort_by_key(|hit| hit.prim);
+        hits.dedup_by_key(|hit| hit.prim);
+        Ok(())
     }
 }
 

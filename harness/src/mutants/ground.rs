@@ -60,6 +60,7 @@ impl Ground {
                 let run = Observed::new("spec", RsmRun::new(&loaded, true)?);
                 rsm = Some((run, RsmPlan::new(&loaded, true)));
             }
+            Chain::Maps => return Err(format!("{} has no kernels", loaded.name)),
         }
         Ok(Self {
             plan: Plan::new(&loaded.scene, true),

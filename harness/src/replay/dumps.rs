@@ -6,10 +6,11 @@ use triptych_spec::vertex::SUBPIXEL_BITS;
 use super::facts;
 use super::gpu::GpuSeen;
 use super::grid::{GridRun, OwnGrid};
+use super::ldm::LdmRun;
 use super::rsm::{RsmRun, Setup, rounded};
 use super::run::Run;
 use super::spec::SpecRun;
-use crate::dump::{FrameArrays, FrameShape, GridArrays, GridHit};
+use crate::dump::{FrameArrays, FrameShape, GridArrays, GridHit, MapArrays, TurnArrays};
 use crate::observe::{Gpu, Observed, Spec};
 
 impl Run<'_> {
@@ -100,6 +101,53 @@ impl Run<'_> {
         let arrays: Vec<FrameArrays> = frames.map(|frame| arrays_of(&frame.frame)).collect();
         let models = spec.value.frames.iter().map(|frame| &frame.parts.model);
         self.dump_frames(&spec.label, &spec.value, models.zip(&arrays))
+    }
+
+    /// The spec's maps, and what is open and lit through them; each number rounded once.
+    pub(super) fn dump_ldm_spec(&self, spec: &Observed<Spec, LdmRun>) -> std::io::Result<()> {
+        let Some(dump) = &self.options.dump else {
+            return Ok(());
+        };
+        let LdmRun {
+            setup,
+            turns,
+            openness,
+            ..
+        } = &spec.value;
+        let leg = dump.leg(&self.loaded.name, &spec.label);
+        leg.meta(&facts::meta(
+            self.loaded,
+            &spec.label,
+            turns.first().map_or(0, |turn| turn.maps.bits),
+        ))?;
+        #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
+        let openness: Vec<f32> = openness.iter().map(|o| o.value as f32).collect();
+        let picture = spec.value.lit.then(|| rounded(&spec.value.picture()));
+        let pixels: Vec<u32> = setup.receivers.iter().map(|r| r.pixel).collect();
+        let receivers: Vec<_> = setup.receivers.iter().map(|r| r.receiver).collect();
+        leg.maps(&MapArrays {
+            lattice: &setup.lattice,
+            size: setup.eye.size,
+            blockers: &setup.blockers,
+            pixels: &pixels,
+            receivers: &receivers,
+            openness: &openness,
+            picture: picture.as_deref(),
+        })?;
+        for (number, turn) in (1..).zip(turns) {
+            let whole: Vec<u32> = turn.open.iter().map(|open| open.whole).collect();
+            leg.turn(
+                number,
+                &TurnArrays {
+                    maps: &turn.maps,
+                    offsets: &turn.layers.offsets,
+                    keys: &turn.layers.keys,
+                    whole: &whole,
+                    hits: &|receiver| turn.hits(&receivers[receiver]).map(|(_, h)| h).collect(),
+                },
+            )?;
+        }
+        Ok(())
     }
 
     /// A leg's frames.

@@ -4,22 +4,23 @@
 //! nothing but the spec's results, so what comes out, and in which order, is the same as if all
 //! pieces had run one after another; only times are those of a machine that has more to do.
 
+mod specs;
 #[cfg(test)]
 mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Mutex, Weak};
 use std::thread;
 
 use triptych_gpu::raster::Path;
-use triptych_spec::vertex;
 
 use super::gpu::Adapter;
 use super::grid::GridRun;
+use super::ldm::LdmRun;
 use super::rows::Rows;
 use super::rsm::RsmRun;
 use super::run::Run;
-use super::spec::{SpecRun, Times, timed};
+use super::spec::SpecRun;
 use super::stop::Stop;
 use super::worst::Errors;
 use crate::cache::Uses;
@@ -53,6 +54,8 @@ pub(super) struct Shared {
     grid: Mutex<Weak<Observed<Spec, GridRun>>>,
     /// Of a scene with indirect light.
     rsm: Mutex<Weak<Observed<Spec, RsmRun>>>,
+    /// Of a scene with maps.
+    ldm: Mutex<Weak<Observed<Spec, LdmRun>>>,
 }
 
 /// What came of a piece of work.
@@ -136,7 +139,8 @@ impl<'a> Run<'a> {
         }
         // Each lane lets go of the spec's results when it goes on to another grid.
         let first: Vec<Self> = lanes.iter().map(|_| self.apart()).collect();
-        (self.spec, self.grid, self.rsm) = (None, None, None);
+        (self.spec, self.grid) = (None, None);
+        (self.rsm, self.ldm) = (None, None);
         let mut parts: Vec<Part<'a>> = thread::scope(|scope| {
             let lanes = lanes.into_values().zip(first);
             let lanes = lanes.map(|(lane, run)| scope.spawn(|| run.lane(lane)));
@@ -186,6 +190,7 @@ impl<'a> Run<'a> {
             spec: self.spec.clone(),
             grid: self.grid.clone(),
             rsm: self.rsm.clone(),
+            ldm: self.ldm.clone(),
             shared: self.shared.clone(),
             rows: Rows::new(&self.loaded.name, &self.loaded.family),
             pictures: Vec::new(),
@@ -204,6 +209,7 @@ impl<'a> Run<'a> {
         self.spec = part.spec.or_else(|| self.spec.take());
         self.grid = part.grid.or_else(|| self.grid.take());
         self.rsm = part.rsm.or_else(|| self.rsm.take());
+        self.ldm = part.ldm.or_else(|| self.ldm.take());
         self.rows.append(part.rows);
         self.pictures.extend(part.pictures);
         self.sheets.extend(part.sheets);
@@ -212,83 +218,4 @@ impl<'a> Run<'a> {
         self.saved.extend(part.saved);
         self.remarks.extend(part.remarks);
     }
-
-    /// The spec's results on a grid, computed when first asked for. Only the last grid's are
-    /// held: they are large.
-    pub(super) fn spec(&mut self, bits: u32) -> Result<Arc<Observed<Spec, SpecRun>>, Stop> {
-        let held = self.spec.as_ref();
-        if let Some(spec) = held.filter(|s| s.value.primitives.bits == bits) {
-            return Ok(spec.clone());
-        }
-        self.spec = None;
-        let shared = self.shared.clone();
-        // A lane that asks for what another is at waits for it.
-        let mut specs = locked(&shared.specs);
-        let known = specs.get(&bits).and_then(Weak::upgrade);
-        let spec = match known {
-            Some(spec) => spec,
-            None => Arc::new(self.new_spec(bits)?),
-        };
-        specs.insert(bits, Arc::downgrade(&spec));
-        self.spec = Some(spec.clone());
-        Ok(spec)
-    }
-
-    fn new_spec(&self, bits: u32) -> Result<Observed<Spec, SpecRun>, Stop> {
-        let scene = &self.loaded.scene;
-        let (positions, transform) = timed(|| vertex::transform(scene));
-        let (polygons, clip) = timed(|| vertex::clip(scene, &positions));
-        let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
-        let mut run = SpecRun::new(scene, primitives, &self.plan)
-            .map_err(|words| Stop::Input(words.into()))?;
-        run.times = Times {
-            transform,
-            clip,
-            snap,
-            ..run.times
-        };
-        Ok(Observed::new("spec", run))
-    }
-
-    /// The same of a scene with a grid.
-    pub(super) fn grid_spec(&mut self) -> Result<Arc<Observed<Spec, GridRun>>, Stop> {
-        if let Some(spec) = &self.grid {
-            return Ok(spec.clone());
-        }
-        let shared = self.shared.clone();
-        let mut grid = locked(&shared.grid);
-        let spec = match grid.upgrade() {
-            Some(spec) => spec,
-            None => {
-                let run = GridRun::new(self.loaded).map_err(Stop::Input)?;
-                Arc::new(Observed::new("spec", run))
-            }
-        };
-        *grid = Arc::downgrade(&spec);
-        self.grid = Some(spec.clone());
-        Ok(spec)
-    }
-
-    /// The same of a scene with indirect light.
-    pub(super) fn rsm_spec(&mut self) -> Result<Arc<Observed<Spec, RsmRun>>, Stop> {
-        if let Some(spec) = &self.rsm {
-            return Ok(spec.clone());
-        }
-        let shared = self.shared.clone();
-        let mut rsm = locked(&shared.rsm);
-        let spec = match rsm.upgrade() {
-            Some(spec) => spec,
-            None => {
-                let run = RsmRun::new(self.loaded, self.options.skip).map_err(Stop::Input)?;
-                Arc::new(Observed::new("spec", run))
-            }
-        };
-        *rsm = Arc::downgrade(&spec);
-        self.rsm = Some(spec.clone());
-        Ok(spec)
-    }
-}
-
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

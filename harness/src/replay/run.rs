@@ -10,6 +10,7 @@ use super::facts::Facts;
 use super::gpu::Adapter;
 use super::grid::GridRun;
 use super::lanes::{Shared, Task};
+use super::ldm::LdmRun;
 use super::rows::Rows;
 use super::rsm::RsmRun;
 use super::spec::SpecRun;
@@ -38,6 +39,8 @@ pub(super) struct Run<'a> {
     pub(super) grid: Option<Arc<Observed<Spec, GridRun>>>,
     /// The spec's results of a scene with indirect light.
     pub(super) rsm: Option<Arc<Observed<Spec, RsmRun>>>,
+    /// The spec's results of a scene with maps.
+    pub(super) ldm: Option<Arc<Observed<Spec, LdmRun>>>,
     /// The same, of all lanes.
     pub(super) shared: Arc<Shared>,
     pub(super) rows: Rows,
@@ -61,6 +64,7 @@ impl<'a> Run<'a> {
             spec: None,
             grid: None,
             rsm: None,
+            ldm: None,
             shared: Arc::default(),
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
@@ -79,14 +83,17 @@ impl<'a> Run<'a> {
             Chain::Frame => self.frame()?,
             Chain::Rays => self.grid()?,
             Chain::Indirect => self.rsm()?,
+            Chain::Maps => self.ldm()?,
         }
         if self.rows.rows.is_empty() {
             let reason = "no other leg was asked for".to_owned();
             self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
-        let causes = match &self.rsm {
-            Some(spec) => spec.value.causes(&self.rows.spots),
-            None => pictures::causes(self.spec.as_deref(), &self.rows.spots),
+        let spots = &self.rows.spots;
+        let causes = match (&self.rsm, &self.ldm) {
+            (Some(spec), _) => spec.value.causes(spots),
+            (_, Some(spec)) => spec.value.causes(spots),
+            (None, None) => pictures::causes(self.spec.as_deref(), spots),
         };
         self.pictures
             .extend(causes.filter(|_| self.options.pictures));

@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 27] = [
+const ORDER: [&str; 32] = [
     "leg",
     "all",
     "expect",
@@ -36,6 +36,11 @@ const ORDER: [&str; 27] = [
     "block",
     "blur",
     "compose",
+    "layers",
+    "chain",
+    "neighbours",
+    "occlusion",
+    "environment",
     "end to end",
     "plan",
 ];

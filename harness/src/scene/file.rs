@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::expect::Expect;
 use super::grid::Grid;
+use super::ldm::Ldm;
 use super::rsm::{Motion, Rsm};
 use super::value::{
     Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
@@ -50,6 +51,8 @@ pub struct SceneFile {
     pub grid: Option<Grid>,
     /// Its triangles light each other; with it the family `rsm` runs in place of the others.
     pub rsm: Option<Spanned<Rsm>>,
+    /// What is open around its points; with it the family `ldm` runs in place of the others.
+    pub ldm: Option<Spanned<Ldm>>,
     /// Shares of what may go unjudged.
     #[serde(default)]
     pub budget: Budget,
@@ -59,6 +62,11 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
+    /// Whether its light is worked out by its legs, and passes through nothing.
+    pub fn is_lit_later(&self) -> bool {
+        self.rsm.is_some() || self.ldm.is_some()
+    }
+
     /// Dim light from everywhere and a stronger one from above, behind the
     /// default camera's right shoulder.
     pub fn default_lights() -> Vec<Light> {
@@ -168,9 +176,10 @@ pub struct MeshEntry {
     /// Copies, each placed by its own transform after the mesh's.
     #[serde(default = "MeshEntry::once")]
     pub instances: Vec<Transform>,
-    /// With `[rsm]`: whether eye and lamp see it; true if left out.
+    /// With `[rsm]` or `[ldm]`: whether eye and lamp see it; true if left out.
     pub seen: Option<bool>,
-    /// With `[rsm]`: whether it blocks indirect light; false if left out.
+    /// With `[rsm]`: whether it blocks indirect light; false if left out. With `[ldm]`: whether
+    /// it is in the maps; true if left out.
     pub blocks: Option<bool>,
     /// With `[rsm]`: how it moves from frame to frame.
     pub moves: Option<Motion>,

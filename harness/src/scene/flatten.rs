@@ -45,7 +45,7 @@ pub(super) fn flatten(
     sources: &mut [Source],
 ) -> Result<(Scene, World), LoadError> {
     let materials = materials(parsed)?;
-    if parsed.file.rsm.is_some() {
+    if parsed.file.is_lit_later() {
         remark(parsed, &materials, sources)?;
     }
     let entries = parsed.file.mesh.iter().zip(&*sources);
@@ -71,15 +71,19 @@ pub(super) fn flatten(
     Ok((scene, World { camera, instances }))
 }
 
-/// Says of each mesh what `[rsm]` does not do of what its materials ask for.
+/// Says of each mesh what `[rsm]` and `[ldm]` do not do of what its materials ask for.
 fn remark(
     parsed: &Parsed,
     materials: &Materials,
     sources: &mut [Source],
 ) -> Result<(), InputError> {
+    let section = match parsed.file.ldm {
+        Some(_) => "[ldm]",
+        None => "[rsm]",
+    };
     for (entry, source) in parsed.file.mesh.iter().zip(sources) {
         let surfaces = surfaces(parsed, materials, entry.get_ref(), source)?;
-        let remark = made_opaque(&surfaces, source);
+        let remark = made_opaque(&surfaces, source, section);
         source.stats.notes.warnings.extend(remark);
     }
     Ok(())
@@ -163,7 +167,7 @@ fn append(
         }));
     }
     // Such a scene's light is worked out by its legs, and passes through nothing.
-    let lit_later = parsed.file.rsm.is_some();
+    let lit_later = parsed.file.is_lit_later();
     let opacity = |opacity| match lit_later {
         true => 1.0,
         false => shade::single(opacity),

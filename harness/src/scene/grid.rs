@@ -98,7 +98,8 @@ impl Default for Rays {
 /// Refuses keys that nothing of a scene with `[grid]` depends on. Lights, materials and background
 /// are seen in its pictures.
 pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
-    if parsed.file.grid.is_none() || parsed.file.rsm.is_some() {
+    let file = &parsed.file;
+    if file.grid.is_none() || file.rsm.is_some() || file.ldm.is_some() {
         return Ok(());
     }
     let idle = ["camera", "abuffer", "expect", "budget.vertex"];

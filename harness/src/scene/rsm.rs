@@ -165,12 +165,12 @@ impl TryFrom<f64> for Length {
 }
 
 impl MeshEntry {
-    /// Whether eye and lamp see it.
+    /// Whether eye and lamp see it, or the eye alone of a scene with `[ldm]`.
     pub fn is_seen(&self) -> bool {
         self.seen.unwrap_or(true)
     }
 
-    /// Whether it blocks indirect light.
+    /// Whether it blocks indirect light, or is in the maps of a scene with `[ldm]`.
     pub fn does_block(&self) -> bool {
         self.blocks.unwrap_or(false)
     }
@@ -185,12 +185,15 @@ impl MeshEntry {
 pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     let file = &parsed.file;
     let Some(rsm) = &file.rsm else {
+        if file.ldm.is_some() {
+            return Ok(());
+        }
         let strange = |m: &&Spanned<MeshEntry>| {
             let m = m.get_ref();
             m.seen.is_some() || m.blocks.is_some() || m.moves.is_some()
         };
         return file.mesh.iter().find(strange).map_or(Ok(()), |mesh| {
-            let message = "`seen`, `blocks` and `moves` are for scenes with [rsm]";
+            let message = "`seen` and `blocks` are for scenes with [rsm] or [ldm], `moves` is for those with [rsm]";
             Err(parsed.error(mesh.span(), message))
         });
     };
@@ -266,6 +269,7 @@ pub(super) fn check_meshes(parsed: &Parsed, meshes: &[Source]) -> Result<(), Inp
 fn without_effect(file: &SceneFile) -> Option<&'static str> {
     let keys = [
         ("[grid]", file.grid.is_some()),
+        ("[ldm]", file.ldm.is_some()),
         ("[[light]]", file.light != SceneFile::default_lights()),
         ("[abuffer]", file.abuffer != Abuffer::default()),
         ("[expect]", file.expect.stated() > 0),

@@ -119,8 +119,9 @@ fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     shown
 }
 
-/// A remark about triangles that are to let light through, and do not in a scene with `[rsm]`.
-pub(super) fn made_opaque(surfaces: &[Surface], source: &Source) -> Option<String> {
+/// A remark about triangles that are to let light through, and do not in a scene with `[rsm]` or
+/// `[ldm]`.
+pub(super) fn made_opaque(surfaces: &[Surface], source: &Source, section: &str) -> Option<String> {
     let clear = |row: &&u32| {
         let surface = surfaces[**row as usize];
         surface.stated && surface.opacity < 1.0
@@ -128,6 +129,8 @@ pub(super) fn made_opaque(surfaces: &[Surface], source: &Source) -> Option<Strin
     let count = source.mesh.material.iter().filter(clear).count();
     (count > 0).then(|| {
         let of = plural(count as u64, "triangle");
-        format!("{of} with an opacity below 1 taken as opaque: [rsm] has no transparent surfaces")
+        format!(
+            "{of} with an opacity below 1 taken as opaque: {section} has no transparent surfaces"
+        )
     })
 }

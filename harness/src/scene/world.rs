@@ -5,7 +5,7 @@ use triptych_spec::matrix::Matrix;
 use triptych_spec::scene::{Scene, Vertex};
 
 use super::Loaded;
-use super::file::{CameraEntry, MeshEntry};
+use super::file::{CameraEntry, MeshEntry, SceneFile};
 use crate::registry::Chain;
 
 /// World space: what the legs that rasterise are given multiplied together.
@@ -64,10 +64,12 @@ impl Loaded {
 
     /// As what it is replayed.
     pub fn chain(&self) -> Chain {
-        match (&self.file.rsm, &self.file.grid) {
-            (Some(_), _) => Chain::Indirect,
-            (None, Some(_)) => Chain::Rays,
-            (None, None) => Chain::Frame,
+        let SceneFile { ldm, rsm, grid, .. } = &self.file;
+        match (ldm, rsm, grid) {
+            (Some(_), ..) => Chain::Maps,
+            (None, Some(_), _) => Chain::Indirect,
+            (None, None, Some(_)) => Chain::Rays,
+            (None, None, None) => Chain::Frame,
         }
     }
 

@@ -1,14 +1,11 @@
-//! What people look at: each frame with and without indirect shadows.
-//!
-//! All pictures of a scene are toned alike, so that they compare: linear colours are
-//! multiplied by one number, the power of two that brings the geometric mean of what is lit
-//! without indirect shadows nearest to a middle grey; `x / (1 + x)` keeps what is bright from
-//! being cut off (Reinhard et al. 2002, equations 1 to 3); then they are encoded as sRGB.
+//! What people look at: each frame with and without indirect shadows, by what light there is
+//! without them.
 
 use super::embree::{Seen, rmse, values};
 use super::spec::RsmRun;
 use crate::dump::FrameArrays;
 use crate::picture::{self, Image};
+use crate::replay::exposure::{self, single, toned};
 use crate::replay::pictures;
 use crate::replay::rows::Spot;
 use crate::report::Picture;
@@ -114,47 +111,16 @@ fn title_of(title: &str, number: usize) -> String {
     }
 }
 
-/// What the geometric mean becomes, about.
-const MIDDLE_GREY: f64 = 0.18;
-
 /// By what all pictures are multiplied.
 fn exposure(run: &RsmRun) -> f64 {
-    let (mut sum, mut lit) = (0.0, 0.0);
-    for frame in &run.frames {
-        for [r, g, b] in values(&run.unblocked(frame)) {
-            let brightest = r.max(g).max(b);
-            if brightest > 0.0 {
-                sum += libm::log2(brightest);
-                lit += 1.0;
-            }
-        }
-    }
-    if lit == 0.0 {
-        return 1.0;
-    }
-    libm::exp2(libm::round(libm::log2(MIDDLE_GREY) - sum / lit))
+    let all = run
+        .frames
+        .iter()
+        .flat_map(|frame| values(&run.unblocked(frame)));
+    exposure::exposure(all)
 }
 
 /// A picture as all are shown.
 fn exposed(run: &RsmRun, pixels: &[[f64; 3]], exposure: f64) -> Image {
-    let toned = single(&toned(pixels, exposure));
-    let image = picture::linear(run.setup.eye.size, &toned);
-    Image {
-        note: format!(
-            "{}; x = {exposure} times the linear colour, shown as x / (1 + x) in sRGB",
-            image.note
-        ),
-        ..image
-    }
-}
-
-fn toned(pixels: &[[f64; 3]], exposure: f64) -> Vec<[f64; 3]> {
-    let toned = |c: f64| c * exposure / (1.0 + c * exposure);
-    pixels.iter().map(|pixel| pixel.map(toned)).collect()
-}
-
-fn single(pixels: &[[f64; 3]]) -> Vec<[f32; 3]> {
-    #[expect(clippy::cast_possible_truncation, reason = "for showing")]
-    let pixel = |pixel: &[f64; 3]| pixel.map(|c| c as f32);
-    pixels.iter().map(pixel).collect()
+    exposure::exposed(run.setup.eye.size, pixels, exposure)
 }

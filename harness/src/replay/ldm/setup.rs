@@ -1,0 +1,226 @@
+//! From a loaded scene to what the spec is given: a lattice, who asks, what blocks, and the
+//! directions of every rotation with the light that comes from there.
+
+use std::collections::BTreeSet;
+
+use triptych_spec::grid::Blockers;
+use triptych_spec::grid::lattice::{Lattice, Point};
+use triptych_spec::ldm::{self, Falloff, Maps, Receiver, directions, rotated, weight};
+use triptych_spec::raster::count;
+use triptych_spec::rsm::{Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, View, gbuffer};
+use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
+
+use crate::replay::placed;
+use crate::replay::spec::FRAGMENTS_MAX;
+use crate::scene::{Loaded, Mistake};
+
+/// From here on a distance is longer than the lattice's diagonal, and all are alike.
+const FAR_MAX: u64 = 1 << 25;
+
+/// What all rotations share.
+pub struct Setup {
+    /// World space and the lattice: around everything, and around a perspective eye.
+    pub lattice: Lattice,
+    /// From where the picture is seen.
+    pub eye: View,
+    /// What is seen.
+    pub model: Model,
+    /// What is in the maps.
+    pub blockers: Blockers,
+    /// What each pixel sees.
+    pub seen: Gbuffer,
+    /// Who asks: the points that pixels see.
+    pub receivers: Vec<Asker>,
+    /// Directions of a set.
+    pub directions: u32,
+    /// How many sets there are.
+    pub rotations: u32,
+    /// Pixels of a map across the diagonal of what blocks.
+    pub resolution: u32,
+    /// How what is hit counts, in steps.
+    pub falloff: Falloff,
+    seed: u64,
+}
+
+/// A pixel that asks what is open over its point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asker {
+    /// Row-major number of the pixel.
+    pub pixel: u32,
+    /// Row of the triangle that it sees.
+    pub triangle: u32,
+    /// The point as the stages take it.
+    pub receiver: Receiver,
+}
+
+/// The maps of a rotation, before anything is drawn.
+pub struct Turn {
+    /// Those that somebody needs.
+    pub maps: Maps,
+    /// Radiance from each map's direction, and from the opposite one; black without a sky.
+    pub sky: Vec<ldm::Sky>,
+    /// Whether light comes through each: from a side that somebody faces.
+    pub lit: Vec<bool>,
+}
+
+impl Setup {
+    /// Of a scene with an `[ldm]`.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, and whatever exceeds a limit, in one line, with the key
+    /// to change.
+    pub fn new(loaded: &Loaded) -> Result<Self, Mistake> {
+        let section = loaded.file.ldm.as_ref();
+        let section = section.ok_or_else(|| "has no [ldm]".to_owned())?.get_ref();
+        let camera = loaded.world.camera;
+        let lattice = placed::lattice(loaded, 1, &[&camera])?;
+        let (model, blockers) = placed::parts(loaded, &lattice, 0)?;
+        let eye = View::new(&camera, &lattice, loaded.scene.size);
+        let eye = eye.map_err(|e| told(&e, &lattice))?;
+        let fragments = count(&primitives(&eye.scene(&model), SUBPIXEL_BITS));
+        if fragments > FRAGMENTS_MAX {
+            let message = format!(
+                "the triangles cover {fragments} fragments, and {FRAGMENTS_MAX} are the limit; use a \
+                 smaller size or fewer triangles"
+            );
+            return Err(Mistake::of("size", message));
+        }
+        let offset = section.offset.0.max(OFFSET_MIN);
+        let seen = gbuffer(&model, &eye, &off_faces(offset));
+        let receivers = receivers(&model, &seen, offset);
+        let falloff = match section.far {
+            None => Falloff::None,
+            Some(far) => far_in_steps(&lattice, far.0, section.power())?,
+        };
+        Ok(Self {
+            lattice,
+            eye,
+            model,
+            blockers,
+            seen,
+            receivers,
+            directions: section.directions.0,
+            rotations: section.rotations.0,
+            resolution: section.resolution.0,
+            falloff,
+            seed: loaded.file.seed,
+        })
+    }
+
+    /// The maps of a rotation. With `skip`, those alone in whose direction somebody's weight is
+    /// not 0; the others add nothing to any sum. One is made in any case.
+    ///
+    /// # Errors
+    /// What the spec says of its limits, in one line.
+    pub fn turn(&self, loaded: &Loaded, rotation: u32, skip: bool) -> Result<Turn, Mistake> {
+        let set = directions(self.directions).map_err(|e| e.to_string())?;
+        let mut set = rotated(&set, self.seed, rotation);
+        let mut maps = self.maps(&set)?;
+        let normals: BTreeSet<Point> = self.receivers.iter().map(|r| r.receiver.normal).collect();
+        if skip {
+            let counts = |map: &&ldm::Map| normals.iter().any(|n| weight(map, *n) != 0);
+            let needed = maps.maps.iter().filter(counts).map(|map| map.direction);
+            let needed: Vec<[f64; 3]> = needed.collect();
+            if needed.len() < set.len() {
+                set.truncate(1);
+                set = if needed.is_empty() { set } else { needed };
+                maps = self.maps(&set)?;
+            }
+        }
+        let sky = |map: &ldm::Map| {
+            let sky = loaded.sky.as_ref();
+            sky.map_or([[0.0; 3]; 2], |sky| sky.sides(map.direction))
+        };
+        let sky: Vec<ldm::Sky> = maps.maps.iter().map(sky).collect();
+        let lit = maps.maps.iter().zip(&sky).map(|(map, sky)| {
+            let side = |n: &Point| match weight(map, *n) {
+                0 => false,
+                weight => sky[usize::from(weight < 0)] != [0.0; 3],
+            };
+            !skip || normals.iter().any(side)
+        });
+        Ok(Turn {
+            lit: lit.collect(),
+            maps,
+            sky,
+        })
+    }
+
+    /// Maps of what blocks.
+    fn maps(&self, directions: &[[f64; 3]]) -> Result<Maps, String> {
+        let corners = self.blockers.triangles.iter().flatten();
+        let corners = corners.map(|row| self.blockers.vertices[*row as usize]);
+        let blockers = bounds(corners).unwrap_or([[0; 3]; 2]);
+        Maps::new(directions, blockers, self.resolution).map_err(|e| e.to_string())
+    }
+}
+
+/// The box around points; `None` if there are none.
+pub(super) fn bounds(points: impl Iterator<Item = Point>) -> Option<[Point; 2]> {
+    points.map(|p| [p, p]).reduce(|[low, high], [p, _]| {
+        let least = [0, 1, 2].map(|i| low[i].min(p[i]));
+        [least, [0, 1, 2].map(|i| high[i].max(p[i]))]
+    })
+}
+
+/// What stage `gbuffer` is told: how far points are moved off their faces, and nothing else.
+pub(super) fn off_faces(offset: u32) -> Parameters {
+    Parameters {
+        radius: 0,
+        stride: 1,
+        divisor: 1,
+        blur: 0,
+        bias: 0,
+        clamp: 1,
+        offset,
+        edge: 0,
+    }
+}
+
+/// The points that pixels see.
+///
+/// A point is met in its triangle's plane, but for rounding in `f64`, which is far below a step;
+/// rounded to the lattice, by half a step along each axis at most; and moved by `offset` steps
+/// along one. So it is off its surface by less than `offset + 1` along any axis.
+fn receivers(model: &Model, seen: &Gbuffer, offset: u32) -> Vec<Asker> {
+    let surfaces = (0_u32..).zip(&seen.surfaces);
+    let asker = |(pixel, surface): (u32, &Option<triptych_spec::rsm::Surface>)| {
+        let surface = surface.as_ref()?;
+        let normal = model.face(surface.triangle).coarse;
+        Some(Asker {
+            pixel,
+            triangle: surface.triangle,
+            receiver: Receiver {
+                point: surface.point,
+                normal: normal.map(|c| c * surface.side),
+                off: offset + 1,
+            },
+        })
+    };
+    surfaces.filter_map(asker).collect()
+}
+
+/// The falloff, in steps.
+fn far_in_steps(lattice: &Lattice, far: f64, power: u32) -> Result<Falloff, Mistake> {
+    match placed::steps(lattice, far).min(FAR_MAX) {
+        0 => {
+            let least = libm::scalbn(0.5, lattice.exponent);
+            let message = format!(
+                "{far:e} is less than half a step of the lattice; {least:.3e} or more is right"
+            );
+            Err(Mistake::of("ldm.far", message))
+        }
+        most => Ok(Falloff::Distance {
+            most: u32::try_from(most).expect("at most 2^25"),
+            power,
+        }),
+    }
+}
+
+/// A camera that has no view of the lattice. It has one of the world: loading saw to that.
+fn told(error: &RsmError, lattice: &Lattice) -> Mistake {
+    let words = error.to_string();
+    let words = words.trim_start_matches("camera: ");
+    let step = libm::scalbn(1.0, lattice.exponent);
+    Mistake::of("camera", format!("{words}, in steps of {step} units"))
+}

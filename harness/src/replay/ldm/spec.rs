@@ -1,0 +1,221 @@
+//! The spec's side: the maps of every rotation, and what is open and lit through them.
+
+use std::time::Duration;
+
+use triptych_spec::bound::{Bounded, Real};
+use triptych_spec::ldm::{
+    self, Hits, Layers, Map, Maps, Open, environment, layers, neighbours, occlusion, openness,
+    weight,
+};
+use triptych_spec::rsm::{Colour, DARK};
+
+use super::limits;
+use super::setup::{Setup, Turn};
+use super::tally::Tally;
+use crate::plan::LdmPlan;
+use crate::replay::rows::Spot;
+use crate::replay::spec::timed;
+use crate::report::Picture;
+use crate::scene::{Loaded, Mistake};
+
+/// Everything that the spec says about a scene with maps.
+pub struct LdmRun {
+    /// What all rotations share.
+    pub setup: Setup,
+    /// The rotations, in order.
+    pub turns: Vec<LdmTurn>,
+    /// What is open over each receiver, all rotations together.
+    pub open: Vec<Open>,
+    /// The part of its hemisphere that is open, from 0 to about 1.
+    pub openness: Vec<Bounded>,
+    /// Irradiance over pi of each receiver, the mean of all rotations.
+    pub light: Vec<Colour>,
+    /// Whether there is a sky, and so light.
+    pub lit: bool,
+    /// Linear colour where nothing is seen.
+    pub background: [f32; 3],
+    /// What was counted, and hashed where it is not held.
+    pub tally: Tally,
+    /// Time of each stage.
+    pub times: Times,
+}
+
+/// A rotation.
+pub struct LdmTurn {
+    /// Its maps: those that somebody needs.
+    pub maps: Maps,
+    /// All their lists.
+    pub layers: Layers,
+    /// Radiance from both sides of each map.
+    pub sky: Vec<ldm::Sky>,
+    /// Which maps light comes through.
+    pub lit: Vec<bool>,
+    /// What is open over each receiver.
+    pub open: Vec<Open>,
+    /// Irradiance over pi of each receiver; nothing without a sky.
+    pub light: Vec<Colour>,
+}
+
+/// Time of each stage.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// Stage layers.
+    pub layers: Duration,
+    /// Stage neighbours.
+    pub neighbours: Duration,
+    /// Stage occlusion.
+    pub occlusion: Duration,
+    /// Stage environment.
+    pub environment: Duration,
+}
+
+impl LdmRun {
+    /// Runs all stages of all rotations, but for directions and stages that the plan leaves out,
+    /// which would give the same.
+    ///
+    /// # Errors
+    /// One line for a scene beyond a limit, with the key to change.
+    pub fn new(loaded: &Loaded, skip: bool) -> Result<Self, Mistake> {
+        let setup = Setup::new(loaded)?;
+        let plan = LdmPlan::new(loaded, skip);
+        // Without anybody who asks there is nothing to look at.
+        let rotations = match setup.receivers.is_empty() && skip {
+            true => 0,
+            false => setup.rotations,
+        };
+        let turns = (0..rotations).map(|rotation| setup.turn(loaded, rotation, skip));
+        let turns: Vec<Turn> = turns.collect::<Result<_, _>>()?;
+        limits::check(&setup.blockers, &turns)?;
+        let mut tally = Tally::default();
+        let mut times = Times::default();
+        let lit = plan.skipped("environment").is_none();
+        let render = |turn| render(&setup, turn, lit, &mut tally, &mut times);
+        let turns: Vec<LdmTurn> = turns.into_iter().map(render).collect::<Result<_, _>>()?;
+        let (open, light) = summed(&turns, setup.receivers.len());
+        let directions = setup.directions * setup.rotations;
+        Ok(Self {
+            openness: open.iter().map(|o| openness(o, directions)).collect(),
+            background: loaded.scene.background,
+            open,
+            light,
+            lit,
+            setup,
+            turns,
+            tally,
+            times,
+        })
+    }
+
+    /// The sum of a receiver's weights in all maps of all rotations, whatever is open: that of
+    /// [`Open::whole`] where everything is.
+    pub fn weights(&self, receiver: usize) -> u32 {
+        let normal = self.setup.receivers[receiver].receiver.normal;
+        let maps = self.turns.iter().flat_map(|turn| &turn.maps.maps);
+        maps.map(|map| weight(map, normal).unsigned_abs()).sum()
+    }
+
+    /// The picture by the light of the sky, with bounds: the colour of what is seen times the
+    /// light that it gets.
+    pub fn picture(&self) -> Vec<Colour> {
+        let background = self.background.map(|c| Bounded::exact(f64::from(c)));
+        let mut picture = vec![background; self.setup.eye.size.pixels()];
+        for (asker, light) in self.setup.receivers.iter().zip(&self.light) {
+            let colour = self.setup.model.colours[asker.triangle as usize];
+            let lit = |i: usize| light[i].mul(Bounded::exact(f64::from(colour[i])));
+            picture[asker.pixel as usize] = [lit(0), lit(1), lit(2)];
+        }
+        picture
+    }
+}
+
+impl LdmRun {
+    /// Which pixels differ, and why; `None` if none does.
+    pub fn causes(&self, spots: &[Spot]) -> Option<Picture> {
+        super::pictures::causes(self, spots)
+    }
+}
+
+impl LdmTurn {
+    /// What a receiver finds in each map, in order.
+    pub fn hits<'t>(
+        &'t self,
+        receiver: &'t ldm::Receiver,
+    ) -> impl Iterator<Item = (&'t Map, Hits)> + 't {
+        let maps = self.maps.maps.iter();
+        maps.map(|map| (map, neighbours(&self.maps, map, &self.layers, receiver)))
+    }
+}
+
+/// A rotation's maps, and what every receiver makes of them, one after another: what they find is
+/// counted and hashed, and not held.
+fn render(
+    setup: &Setup,
+    turn: Turn,
+    with_light: bool,
+    tally: &mut Tally,
+    times: &mut Times,
+) -> Result<LdmTurn, Mistake> {
+    let (layers, at) = timed(|| layers(&turn.maps, &setup.blockers));
+    times.layers += at;
+    let layers = layers.map_err(|e| e.to_string())?;
+    let Turn { maps, sky, lit } = turn;
+    tally.map(&maps, &layers);
+    tally.dark += lit.iter().filter(|lit| !**lit).count() as u64;
+    let mut turn = LdmTurn {
+        maps,
+        layers,
+        sky,
+        lit,
+        open: Vec::with_capacity(setup.receivers.len()),
+        light: Vec::new(),
+    };
+    for asker in &setup.receivers {
+        let receiver = &asker.receiver;
+        let (found, at) = timed(|| turn.hits(receiver).collect::<Vec<_>>());
+        times.neighbours += at;
+        tally.hits(found.iter().map(|(_, hits)| hits));
+        let hits = || found.iter().copied();
+        let (open, at) = timed(|| occlusion(hits(), receiver.normal, setup.falloff));
+        times.occlusion += at;
+        let light = with_light.then(|| {
+            let of = hits().zip(turn.sky.iter().zip(&turn.lit));
+            let of = of.filter(|(_, (_, lit))| **lit);
+            let of = of.map(|((map, hits), (sky, _))| (map, hits, sky));
+            timed(|| environment(of, receiver.normal, setup.directions))
+        });
+        turn.open.push(open);
+        if let Some((light, at)) = light {
+            times.environment += at;
+            turn.light.push(light);
+        }
+    }
+    Ok(turn)
+}
+
+/// Sums over rotations: what is open, and the mean of the light.
+fn summed(turns: &[LdmTurn], receivers: usize) -> (Vec<Open>, Vec<Colour>) {
+    let mut open = vec![
+        Open {
+            whole: 0,
+            part: Bounded::exact(0.0),
+        };
+        receivers
+    ];
+    let mut light = vec![DARK; receivers];
+    for turn in turns {
+        for (sum, one) in open.iter_mut().zip(&turn.open) {
+            // At most 4096 weights of 2^19.
+            sum.whole += one.whole;
+            sum.part = sum.part.add(one.part);
+        }
+        for (sum, one) in light.iter_mut().zip(&turn.light) {
+            *sum = [0, 1, 2].map(|i| sum[i].add(one[i]));
+        }
+    }
+    let share = Bounded::once(1.0 / f64::from(u32::try_from(turns.len().max(1)).expect("few")));
+    let mean = |colour: Colour| match turns.len() {
+        0 | 1 => colour,
+        _ => colour.map(|channel| channel.mul(share)),
+    };
+    (open, light.into_iter().map(mean).collect())
+}
