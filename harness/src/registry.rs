@@ -140,11 +140,26 @@ pub const FAMILIES: &[Family] = &[
         name: "ldm",
         chain: Chain::Maps,
         stages: &[
-            of_maps("layers"),
-            of_maps("chain"),
-            of_maps("neighbours"),
-            of_maps("occlusion"),
-            of_maps("environment"),
+            of_maps(
+                "layers",
+                &[
+                    "layers_larges",
+                    "layers_count",
+                    "layers_count_large",
+                    "layers_tiles",
+                    "layers_sums",
+                    "layers_ends",
+                    "layers_fill",
+                    "layers_fill_large",
+                    "layers_sort",
+                    "layers_runs",
+                    "layers_merge",
+                ],
+            ),
+            of_maps("chain", &["chain", "chain_large", "chain_sort"]),
+            of_maps("neighbours", &["neighbours"]),
+            of_maps("occlusion", &["occlusion"]),
+            of_maps("environment", &["environment"]),
         ],
         no_corpus: None,
     },
@@ -232,10 +247,10 @@ const fn of_pixels(name: &'static str, entries: &'static [&'static str]) -> Stag
     }
 }
 
-const fn of_maps(name: &'static str) -> Stage {
+const fn of_maps(name: &'static str, entries: &'static [&'static str]) -> Stage {
     Stage {
         name,
-        compute: Twin::None("no kernel yet"),
+        compute: Twin::Entries(entries),
         fragment: Twin::None("works on maps, pixels and points, in compute kernels"),
     }
 }

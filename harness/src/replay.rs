@@ -10,6 +10,7 @@ pub mod facts;
 pub mod gpu;
 pub mod grid;
 mod hardware;
+mod judged;
 mod lanes;
 pub mod ldm;
 mod legs;

@@ -1,5 +1,6 @@
 //! Stages that ask the lists: neighbours, occlusion, environment.
 
+use std::ops::Range;
 use std::time::Duration;
 
 use triptych_spec::ldm::{Falloff, Hits, KEYS_PER_STEP, Receiver, Sky, WEIGHT_BITS};
@@ -26,7 +27,8 @@ impl Stages<'_> {
         let mut found = Vec::with_capacity(receivers.len() * self.device.all.maps.len());
         let mut time = Duration::ZERO;
         for batch in &self.batches {
-            for told in asking(batch, self.device.told, items, at_once) {
+            let maps = batch.span.maps.clone();
+            for told in asking(batch, maps, self.device.told, items, at_once) {
                 let hits = gpu.storage("hits of receivers", bytes * u64::from(told.maps))?;
                 let named = [("receivers", &own), ("hits", &hits)];
                 let named = [&named[..], &lists(batch)].concat();
@@ -53,7 +55,7 @@ impl Stages<'_> {
         self.time = Duration::ZERO;
         let told = fading(self.device.told, falloff);
         self.ask(
-            "occlusion",
+            ("occlusion", |_| true),
             told,
             count(receivers),
             &[("receivers", &own), ("opened", &sums)],
@@ -61,11 +63,13 @@ impl Stages<'_> {
         self.device.gpu.read(&sums, receivers.len())
     }
 
-    /// Stage `environment`, of all maps; a sky for each. Radiance that an `f32` holds.
+    /// Stage `environment`, of all maps but those that are not lit; a sky for each, of radiance that
+    /// an `f32` holds. The sum is divided by the number of `directions` of the set.
     pub fn environment(
         &mut self,
         receivers: &[Receiver],
-        skies: &[Sky],
+        (skies, lit): (&[Sky], &[bool]),
+        directions: u32,
     ) -> Result<Vec<[f32; 3]>, GpuError> {
         let gpu = self.device.gpu;
         let own = self.upload(receivers)?;
@@ -74,10 +78,16 @@ impl Stages<'_> {
         let light = gpu.upload("light", &vec![[0.0_f32; 4]; receivers.len()])?;
         self.time = Duration::ZERO;
         let named = [("receivers", &own), ("skies", &skies), ("light", &light)];
-        self.ask("environment", self.device.told, count(receivers), &named)?;
+        let is_lit = |map: u32| lit.get(map as usize).copied().unwrap_or(false);
+        self.ask(
+            ("environment", is_lit),
+            self.device.told,
+            count(receivers),
+            &named,
+        )?;
         let light: Vec<[f32; 4]> = gpu.read(&light, receivers.len())?;
         // Kernels sum up; what is common to all terms comes last, in f32 like the rest.
-        let scale = 2.0 / self.device.all.maps.len() as f32 / (1_u32 << WEIGHT_BITS) as f32;
+        let scale = 2.0 / directions as f32 / (1_u32 << WEIGHT_BITS) as f32;
         let scaled = |[r, g, b, _]: [f32; 4]| [r * scale, g * scale, b * scale];
         Ok(light.into_iter().map(scaled).collect())
     }
@@ -87,23 +97,37 @@ impl Stages<'_> {
         self.device.gpu.upload("receivers", &packed)
     }
 
-    /// One invocation for each receiver, and so many maps at a time.
+    /// One invocation for each receiver; of the maps that are asked, so many at a time.
     fn ask(
         &mut self,
-        entry: &str,
+        (entry, asked): (&str, impl Fn(u32) -> bool),
         told: Told,
         items: u32,
         named: &[(&str, &wgpu::Buffer)],
     ) -> Result<(), GpuError> {
         for batch in &self.batches {
             let named = [named, &lists(batch)].concat();
-            for told in asking(batch, told, items, ASKED) {
-                let pass = self.device.each(entry, told, &named)?;
-                self.time += self.device.run(&[pass])?;
+            for maps in runs(batch.span.maps.clone(), &asked) {
+                for told in asking(batch, maps, told, items, ASKED) {
+                    let pass = self.device.each(entry, told, &named)?;
+                    self.time += self.device.run(&[pass])?;
+                }
             }
         }
         Ok(())
     }
+}
+
+/// The longest runs of numbers for all of which something holds.
+fn runs(numbers: Range<u32>, holds: impl Fn(u32) -> bool) -> Vec<Range<u32>> {
+    let mut runs: Vec<Range<u32>> = Vec::new();
+    for number in numbers.filter(|number| holds(*number)) {
+        match runs.last_mut() {
+            Some(last) if last.end == number => last.end += 1,
+            _ => runs.push(number..number + 1),
+        }
+    }
+    runs
 }
 
 /// A batch's lists by the names that kernels have for them.
@@ -111,19 +135,19 @@ pub(super) fn lists(batch: &Batch) -> [(&'static str, &wgpu::Buffer); 2] {
     [("offsets", &batch.offsets), ("listed", &batch.keys)]
 }
 
-/// Dispatches over the maps of a batch, so many at a time.
+/// Dispatches over maps of a batch, so many at a time.
 pub(super) fn asking(
     batch: &Batch,
+    maps: Range<u32>,
     told: Told,
     items: u32,
     at_once: u32,
 ) -> impl Iterator<Item = Told> {
     let told = batch.span.told(told);
-    let numbers = batch.span.maps.clone();
-    let firsts = numbers.clone().step_by(at_once as usize);
+    let firsts = maps.clone().step_by(at_once as usize);
     firsts.map(move |first_map| Told {
         first_map,
-        maps: at_once.min(numbers.end - first_map),
+        maps: at_once.min(maps.end - first_map),
         items,
         ..told
     })

@@ -148,7 +148,7 @@ impl<'g> Timed<'g> {
         let mut passes = Vec::new();
         for batch in &self.batches {
             let named = [&named[..], &lists(batch)].concat();
-            for told in asking(batch, told, items, ASKED) {
+            for told in asking(batch, batch.span.maps.clone(), told, items, ASKED) {
                 let pass = self.device.each("occlusion", told, &named)?;
                 passes.push(match passes.is_empty() {
                     true => pass.after_clearing(self.opened.clone()),

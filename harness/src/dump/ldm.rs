@@ -42,8 +42,8 @@ pub struct TurnArrays<'a> {
     pub keys: &'a [u32],
     /// What is open as a whole, of each receiver.
     pub whole: &'a [u32],
-    /// What a receiver finds in each map: too much to hold for all of them.
-    pub hits: &'a dyn Fn(usize) -> Vec<Hits>,
+    /// What a receiver finds in each map, if that is written: too much to hold for all of them.
+    pub hits: Option<&'a dyn Fn(usize) -> Vec<Hits>>,
 }
 
 impl LegDump {
@@ -116,9 +116,10 @@ impl LegDump {
         self.u64(&folder, "offsets", &[offsets.len()], &offsets)?;
         self.u32(&folder, "depth", &[keys.len()], keys)?;
         self.u32(&folder, "whole", &[whole.len()], whole)?;
-        if whole.len().saturating_mul(count) > HITS_MAX {
+        let fits = whole.len().saturating_mul(count) <= HITS_MAX;
+        let Some(hits) = hits.filter(|_| fits) else {
             return Ok(());
-        }
+        };
         let key = |key: Option<u32>| key.map_or(-1, u32::cast_signed);
         let hits: Vec<i32> = (0..whole.len())
             .flat_map(hits)

@@ -11,10 +11,11 @@ use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 use super::{Cell, Mutant};
 use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
-use crate::plan::{Plan, RsmPlan};
+use crate::plan::{LdmPlan, Plan, RsmPlan};
 use crate::registry::Chain;
 use crate::replay::gpu::{Adapter, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
+use crate::replay::ldm::{LdmLeg, LdmRun};
 use crate::replay::rows::Rows;
 use crate::replay::rsm::{RsmLeg, RsmRun};
 use crate::replay::spec::SpecRun;
@@ -33,6 +34,8 @@ pub(super) struct Ground {
     grid: Option<Observed<Spec, GridRun>>,
     /// Of a scene of indirect light.
     rsm: Option<(Observed<Spec, RsmRun>, RsmPlan)>,
+    /// Of a scene of maps.
+    ldm: Option<(Observed<Spec, LdmRun>, LdmPlan)>,
     /// Where the shipped kernels were seen to agree.
     pub(super) sound: BTreeSet<(String, Setting)>,
 }
@@ -52,7 +55,7 @@ pub(super) type Tried = Result<(Cell, Option<Setting>), String>;
 impl Ground {
     pub(super) fn load(mutant: &Mutant) -> Result<Self, String> {
         let loaded = load_entry(&mutant.entry(), None).map_err(|e| e.to_string())?;
-        let (mut grid, mut rsm) = (None, None);
+        let (mut grid, mut rsm, mut ldm) = (None, None, None);
         match loaded.chain() {
             Chain::Frame => {}
             Chain::Rays => grid = Some(Observed::new("spec", GridRun::new(&loaded)?)),
@@ -60,13 +63,17 @@ impl Ground {
                 let run = Observed::new("spec", RsmRun::new(&loaded, true)?);
                 rsm = Some((run, RsmPlan::new(&loaded, true)));
             }
-            Chain::Maps => return Err(format!("{} has no kernels", loaded.name)),
+            Chain::Maps => {
+                let run = Observed::new("spec", LdmRun::new(&loaded, true)?);
+                ldm = Some((run, LdmPlan::new(&loaded, true)));
+            }
         }
         Ok(Self {
             plan: Plan::new(&loaded.scene, true),
             loaded,
             grid,
             rsm,
+            ldm,
             specs: BTreeMap::new(),
             sound: BTreeSet::new(),
         })
@@ -74,7 +81,7 @@ impl Ground {
 
     /// Runs the spec on a grid, once.
     pub(super) fn prepare(&mut self, bits: u32) -> Result<(), String> {
-        let drawn = self.grid.is_none() && self.rsm.is_none();
+        let drawn = self.loaded.chain() == Chain::Frame;
         if drawn && !self.specs.contains_key(&bits) {
             let snapped = primitives(&self.loaded.scene, bits);
             let run = SpecRun::new(&self.loaded.scene, snapped, &self.plan)?;
@@ -164,6 +171,15 @@ impl Ground {
         }
         if let Some((spec, plan)) = &self.rsm {
             let leg = RsmLeg {
+                adapter,
+                path,
+                spec,
+                plan,
+            };
+            return leg.each(&mut rows).map(|()| rows.rows);
+        }
+        if let Some((spec, plan)) = &self.ldm {
+            let leg = LdmLeg {
                 adapter,
                 path,
                 spec,

@@ -6,7 +6,7 @@ use triptych_spec::vertex::SUBPIXEL_BITS;
 use super::facts;
 use super::gpu::GpuSeen;
 use super::grid::{GridRun, OwnGrid};
-use super::ldm::LdmRun;
+use super::ldm::{LdmRun, Made};
 use super::rsm::{RsmRun, Setup, rounded};
 use super::run::Run;
 use super::spec::SpecRun;
@@ -115,11 +115,7 @@ impl Run<'_> {
             ..
         } = &spec.value;
         let leg = dump.leg(&self.loaded.name, &spec.label);
-        leg.meta(&facts::meta(
-            self.loaded,
-            &spec.label,
-            turns.first().map_or(0, |turn| turn.maps.bits),
-        ))?;
+        leg.meta(&facts::meta(self.loaded, &spec.label, spec.value.bits()))?;
         #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
         let openness: Vec<f32> = openness.iter().map(|o| o.value as f32).collect();
         let picture = spec.value.lit.then(|| rounded(&spec.value.picture()));
@@ -143,7 +139,38 @@ impl Run<'_> {
                     offsets: &turn.layers.offsets,
                     keys: &turn.layers.keys,
                     whole: &whole,
-                    hits: &|receiver| turn.hits(&receivers[receiver]).map(|(_, h)| h).collect(),
+                    hits: Some(&|receiver| {
+                        turn.hits(&receivers[receiver]).map(|(_, h)| h).collect()
+                    }),
+                },
+            )?;
+        }
+        Ok(())
+    }
+
+    /// What a device made of a scene of maps, from its own lists.
+    pub(super) fn dump_ldm_gpu(
+        &self,
+        label: &str,
+        spec: &Observed<Spec, LdmRun>,
+        made: &[Made],
+    ) -> std::io::Result<()> {
+        let Some(dump) = &self.options.dump else {
+            return Ok(());
+        };
+        let leg = dump.leg(&self.loaded.name, label);
+        let run = &spec.value;
+        leg.meta(&facts::meta(self.loaded, label, run.bits()))?;
+        for (number, (turn, made)) in (1..).zip(run.turns.iter().zip(made)) {
+            let whole: Vec<u32> = made.open.iter().map(|open| open.whole).collect();
+            leg.turn(
+                number,
+                &TurnArrays {
+                    maps: &turn.maps,
+                    offsets: &made.layers.offsets,
+                    keys: &made.layers.keys,
+                    whole: &whole,
+                    hits: None,
                 },
             )?;
         }

@@ -3,6 +3,7 @@
 mod cloud;
 mod embree;
 mod facts;
+mod gpu;
 pub mod limits;
 mod pictures;
 mod setup;
@@ -23,9 +24,9 @@ use crate::cache::Uses;
 use crate::compare::{Judgement, compare};
 use crate::observe::{Embree, Observed};
 use crate::plan::LdmPlan;
-use crate::registry::{Chain, Twin, stages_of};
 use crate::row::Class;
 pub use embree::{Off, SAMPLES, Seen, ask};
+pub use gpu::{LdmLeg, Made};
 pub use setup::{Asker, Setup, Turn};
 pub use spec::{LdmRun, LdmTurn, Times};
 pub use tally::Tally;
@@ -53,14 +54,25 @@ impl Run<'_> {
         self.side_by_side(tasks)
     }
 
-    /// No stage has a kernel yet, and rows say so.
     fn ldm_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
-        for stage in stages_of(Chain::Maps) {
-            if let Twin::None(why) = stage.compute {
-                let rows = &mut self.rows;
-                rows.skip(stage.name, "spec", &label, Class::Exact, why.to_owned());
-            }
+        let why = "works on maps, pixels and points, in compute kernels";
+        if self.skips_path(adapter, path, why) {
+            return Ok(());
+        }
+        let plan = LdmPlan::new(self.loaded, self.options.skip);
+        let spec = self.ldm_spec()?;
+        let leg = LdmLeg {
+            adapter,
+            path,
+            spec: &spec,
+            plan: &plan,
+        };
+        match leg.run(&mut self.rows) {
+            Ok(made) => self
+                .dump_ldm_gpu(&label, &spec, &made)
+                .map_err(Stop::Dump)?,
+            Err(error) => self.leg_refused(&label, &error),
         }
         Ok(())
     }

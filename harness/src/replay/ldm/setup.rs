@@ -115,7 +115,7 @@ impl Setup {
     pub fn turn(&self, loaded: &Loaded, rotation: u32, skip: bool) -> Result<Turn, Mistake> {
         let set = directions(self.directions).map_err(|e| e.to_string())?;
         let mut set = rotated(&set, self.seed, rotation);
-        let mut maps = self.maps(&set)?;
+        let mut maps = self.maps(&set, skip)?;
         let normals: BTreeSet<Point> = self.receivers.iter().map(|r| r.receiver.normal).collect();
         if skip {
             let counts = |map: &&ldm::Map| normals.iter().any(|n| weight(map, *n) != 0);
@@ -124,7 +124,7 @@ impl Setup {
             if needed.len() < set.len() {
                 set.truncate(1);
                 set = if needed.is_empty() { set } else { needed };
-                maps = self.maps(&set)?;
+                maps = self.maps(&set, skip)?;
             }
         }
         let sky = |map: &ldm::Map| {
@@ -146,12 +146,14 @@ impl Setup {
         })
     }
 
-    /// Maps of what blocks.
-    fn maps(&self, directions: &[[f64; 3]]) -> Result<Maps, String> {
+    /// Maps of what blocks. With `skip`, as far as somebody asks.
+    fn maps(&self, directions: &[[f64; 3]], skip: bool) -> Result<Maps, String> {
         let corners = self.blockers.triangles.iter().flatten();
         let corners = corners.map(|row| self.blockers.vertices[*row as usize]);
         let blockers = bounds(corners).unwrap_or([[0; 3]; 2]);
-        Maps::new(directions, blockers, self.resolution).map_err(|e| e.to_string())
+        let asking = self.receivers.iter().map(|asker| asker.receiver.point);
+        let asking = bounds(asking).filter(|_| skip).unwrap_or(blockers);
+        Maps::new(directions, blockers, asking, self.resolution).map_err(|e| e.to_string())
     }
 }
 

@@ -129,6 +129,11 @@ impl LdmRun {
 }
 
 impl LdmRun {
+    /// Sub-pixel bits of all maps.
+    pub fn bits(&self) -> u32 {
+        self.turns.first().map_or(0, |turn| turn.maps.bits)
+    }
+
     /// Which pixels differ, and why; `None` if none does.
     pub fn causes(&self, spots: &[Spot]) -> Option<Picture> {
         super::pictures::causes(self, spots)

@@ -3,7 +3,6 @@
 
 mod first;
 mod own;
-mod tally;
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
@@ -19,9 +18,9 @@ use crate::dump::FrameArrays;
 use crate::observe::{Gpu, Observed, Spec};
 use crate::plan::RsmPlan;
 use crate::replay::gpu::Adapter;
+use crate::replay::judged::Judged;
 use crate::replay::rows::Rows;
 use crate::row::Class;
-use tally::Tally;
 
 /// One GPU leg of one scene.
 pub struct RsmLeg<'a> {
@@ -51,7 +50,7 @@ impl RsmLeg<'_> {
     /// # Errors
     /// Whatever the device reports.
     pub fn each(&self, rows: &mut Rows) -> Result<(), GpuError> {
-        let mut tally = Tally::default();
+        let mut tally = Judged::default();
         for frame in &self.spec.value.frames {
             let mut stages = self.stages(frame)?;
             self.seen(frame, &mut stages, &mut tally)?;
@@ -105,7 +104,7 @@ impl RsmLeg<'_> {
         &self,
         frame: &RsmFrame,
         stages: &mut Stages<'_>,
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<(), GpuError> {
         let RsmFrame { frame, times, .. } = frame;
         let seen = stages.gbuffer(&triangles(&frame.seen))?;
@@ -137,7 +136,7 @@ impl RsmLeg<'_> {
         &self,
         of: &RsmFrame,
         stages: &mut Stages<'_>,
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<(), GpuError> {
         let RsmFrame { frame, times, .. } = of;
         let (seen, places) = (&frame.seen.surfaces, &frame.places);
@@ -176,7 +175,7 @@ impl RsmLeg<'_> {
         &self,
         of: &RsmFrame,
         stages: &mut Stages<'_>,
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<(), GpuError> {
         let RsmFrame { frame, times, .. } = of;
         let setting = self.spec.value.setting(of);

@@ -9,12 +9,12 @@ use triptych_spec::rsm::{Gbuffer, Light, Surface, View};
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::own::STAGE;
-use super::tally::Tally;
 use super::{RsmFrame, RsmLeg};
 use crate::compare::Judgement;
 use crate::compare::grid::{self as lists, Runs};
 use crate::compare::rsm as judge;
 use crate::dump::FrameArrays;
+use crate::replay::judged::Judged;
 
 /// What a view shows, by the device.
 struct Visible {
@@ -28,7 +28,7 @@ impl RsmLeg<'_> {
         &self,
         of: &RsmFrame,
         stages: &mut Stages<'_>,
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<bool, GpuError> {
         if !self.runs("block") {
             return Ok(true);
@@ -58,7 +58,7 @@ impl RsmLeg<'_> {
         of: &RsmFrame,
         stages: &mut Stages<'_>,
         own: &mut FrameArrays,
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<Option<Vec<u32>>, GpuError> {
         let frame = &of.frame;
         let setting = self.spec.value.setting(of);
@@ -111,7 +111,7 @@ impl RsmLeg<'_> {
         &self,
         of: &RsmFrame,
         (view, spec, unit): (&View, &Gbuffer, &'static str),
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<Option<Visible>, GpuError> {
         let adapter = self.adapter;
         let native = adapter.native.as_ref();
@@ -147,7 +147,7 @@ impl RsmLeg<'_> {
 
 /// Whether a result is what it may be; if not, the row tells how. A result that is sound has its
 /// row where its stage is judged from the spec's input.
-fn may_follow(judged: Judgement, tally: &mut Tally) -> bool {
+fn may_follow(judged: Judgement, tally: &mut Judged) -> bool {
     let sound = judged.differ() == 0;
     if !sound {
         // Its errors have another unit than the picture's.

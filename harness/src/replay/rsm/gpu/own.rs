@@ -12,10 +12,10 @@ use triptych_spec::rsm::{
     Blocked, Coarse, Colour, DARK, Gbuffer, Setting, block, blur, compose, direct, gather,
 };
 
-use super::tally::Tally;
 use super::{RsmFrame, RsmLeg, of_coarse, pixels, word};
 use crate::compare::rsm as judge;
 use crate::dump::FrameArrays;
+use crate::replay::judged::Judged;
 use crate::replay::rows::Rows;
 use crate::row::Class;
 
@@ -41,7 +41,7 @@ impl RsmLeg<'_> {
     /// all of them, frame by frame, as far as they came.
     pub(super) fn end_to_end(&self, rows: &mut Rows) -> Result<Vec<FrameArrays>, GpuError> {
         let label = self.label();
-        let mut tally = Tally::default();
+        let mut tally = Judged::default();
         let mut frames = Vec::new();
         let mut end = End::Picture;
         for frame in &self.spec.value.frames {
@@ -64,7 +64,7 @@ impl RsmLeg<'_> {
         &self,
         frame: &RsmFrame,
         own: &mut FrameArrays,
-        tally: &mut Tally,
+        tally: &mut Judged,
     ) -> Result<End, GpuError> {
         let mut stages = self.stages(frame)?;
         if !self.cells(frame, &mut stages, tally)? {

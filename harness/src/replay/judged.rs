@@ -1,4 +1,4 @@
-//! Judgements of the same stage over all frames.
+//! Judgements of the same stage over all frames, or over all rotations.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use crate::row::Class;
 
 /// What became of each stage, and of the parts of it that are judged in another way.
 #[derive(Default)]
-pub(super) struct Tally {
+pub(super) struct Judged {
     kinds: Vec<Kind>,
 }
 
@@ -23,7 +23,7 @@ struct Kind {
     times: Option<[Duration; 2]>,
 }
 
-impl Tally {
+impl Judged {
     /// A frame's judgement of a stage, with the time of the spec and of the device.
     pub(super) fn add(
         &mut self,

@@ -1,0 +1,311 @@
+//! A GPU leg of a scene of maps: every stage from the spec's input, then from the device's own.
+
+use std::time::Duration;
+
+use triptych_gpu::error::GpuError;
+use triptych_gpu::kernel::Kernels;
+use triptych_gpu::ldm::{self as device, Open, Stages};
+use triptych_gpu::raster::Path;
+use triptych_spec::ldm::{Chains, Hits, Layers, Link, Receiver};
+
+use super::spec::{LdmRun, LdmTurn};
+use crate::compare::Judgement;
+use crate::compare::ldm as judge;
+use crate::observe::{Gpu, Observed, Spec};
+use crate::plan::LdmPlan;
+use crate::replay::gpu::Adapter;
+use crate::replay::judged::Judged;
+use crate::replay::rows::Rows;
+use crate::row::Class;
+
+/// What the rows of stages from a device's own lists are about.
+const OWN: &str = "end to end";
+
+/// Traces that are compared at once: 12 bytes each on both sides.
+const TRACES: usize = 1 << 22;
+
+/// One GPU leg of one scene.
+pub struct LdmLeg<'a> {
+    /// On which it runs.
+    pub adapter: &'a Adapter,
+    /// With words or with native integers.
+    pub path: Path,
+    /// What the spec found.
+    pub spec: &'a Observed<Spec, LdmRun>,
+    /// Which stages run.
+    pub plan: &'a LdmPlan,
+}
+
+/// What a device made of a rotation, from its own lists.
+#[derive(Clone, Debug, Default)]
+pub struct Made {
+    /// Its lists.
+    pub layers: Layers,
+    /// What is open over each receiver.
+    pub open: Vec<Open>,
+    /// Irradiance over pi of each receiver; nothing without a sky.
+    pub light: Vec<[f32; 3]>,
+}
+
+impl LdmLeg<'_> {
+    /// Adds a row for each stage from the spec's input, and rows for all of them from the
+    /// device's own lists; gives what it made in the latter.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn run(&self, rows: &mut Rows) -> Result<Vec<Made>, GpuError> {
+        self.each(rows)?;
+        let mut judged = Judged::default();
+        let turns = self.spec.value.turns.iter();
+        let made: Result<Vec<Made>, GpuError> =
+            turns.map(|turn| self.whole(turn, &mut judged)).collect();
+        judged.rows(&self.spec.label, &self.label(), rows);
+        made
+    }
+
+    /// Adds a row for each stage from the spec's input.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn each(&self, rows: &mut Rows) -> Result<(), GpuError> {
+        let mut judged = Judged::default();
+        for turn in &self.spec.value.turns {
+            let mut stages = self.stages(turn, u64::MAX)?;
+            self.lists(turn, &mut stages, &mut judged)?;
+            stages.give_layers(&turn.layers)?;
+            self.found(turn, &mut stages, &mut judged)?;
+            self.sums(turn, &mut stages, &mut judged)?;
+        }
+        let label = self.label();
+        judged.rows(&self.spec.label, &label, rows);
+        for pass in self.plan.passes.iter().filter(|pass| !pass.runs) {
+            let reason = format!("plan: {}", pass.reason);
+            rows.skip(pass.name, &self.spec.label, &label, Class::Exact, reason);
+        }
+        Ok(())
+    }
+
+    fn kernels(&self) -> &Kernels {
+        let native = self.adapter.native.as_ref();
+        let native = native.filter(|_| self.path == Path::Native);
+        native.unwrap_or(&self.adapter.kernels)
+    }
+
+    fn stages<'s>(&'s self, turn: &'s LdmTurn, budget: u64) -> Result<Stages<'s>, GpuError> {
+        let blockers = &self.spec.value.setup.blockers;
+        let gpu = &self.adapter.gpu;
+        Stages::new(gpu, self.kernels(), &turn.maps, blockers, budget)
+    }
+
+    /// The leg's name in rows.
+    pub fn label(&self) -> String {
+        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+    }
+
+    fn runs(&self, stage: &str) -> bool {
+        self.plan.skipped(stage).is_none()
+    }
+
+    /// Puts the device's results beside the spec's by their types.
+    fn beside<T, U>(
+        &self,
+        spec: T,
+        seen: U,
+        judged: impl FnOnce(&T, &U) -> Judgement,
+    ) -> Judgement {
+        let spec = self.spec.derive(spec);
+        let seen = Observed::<Gpu, _>::new(self.label(), seen);
+        crate::compare::compare(&spec, &seen, judged)
+    }
+
+    /// A share of the spec's time of a stage, which it has for all rotations.
+    fn share(&self, time: Duration) -> Duration {
+        time / u32::try_from(self.spec.value.turns.len().max(1)).unwrap_or(u32::MAX)
+    }
+
+    /// Both kinds of lists, from triangles.
+    fn lists(
+        &self,
+        turn: &LdmTurn,
+        stages: &mut Stages<'_>,
+        judged: &mut Judged,
+    ) -> Result<(), GpuError> {
+        let (maps, must) = (&turn.maps, &turn.layers);
+        let of_spec = self.share(self.spec.value.times.layers);
+        if self.runs("layers") {
+            let seen = stages.layers()?;
+            let judgement = self.beside(must, seen, |must, seen| {
+                judge::layers(maps, must, &seen.offsets, &seen.keys)
+            });
+            judged.add("layers", judgement, of_spec, stages.time);
+        }
+        if self.runs("chain") {
+            let all = u32::try_from(must.keys.len()).unwrap_or(u32::MAX);
+            for (capacity, stage) in [(all, "chain"), (all / 2, "overflow")] {
+                let seen = chains(stages.chain(capacity)?, capacity);
+                let judgement =
+                    self.beside(must, seen, |must, seen| judge::chains(maps, must, seen));
+                judged.add(stage, judgement, of_spec, stages.time);
+            }
+        }
+        Ok(())
+    }
+
+    /// What receivers find in the spec's lists, some receivers at a time.
+    fn found(
+        &self,
+        turn: &LdmTurn,
+        stages: &mut Stages<'_>,
+        judged: &mut Judged,
+    ) -> Result<(), GpuError> {
+        if !self.runs("neighbours") {
+            return Ok(());
+        }
+        let maps = turn.maps.maps.len();
+        let at_once = (TRACES / maps).max(1);
+        let of_spec = self.share(self.spec.value.times.neighbours);
+        let mut time = Duration::ZERO;
+        let mut parts = Vec::new();
+        for askers in self.spec.value.setup.receivers.chunks(at_once) {
+            let receivers: Vec<Receiver> = askers.iter().map(|a| a.receiver).collect();
+            let pixels: Vec<u32> = askers.iter().map(|a| a.pixel).collect();
+            let seen = by_receiver(&stages.neighbours(&receivers)?, maps);
+            time += stages.time;
+            let must: Vec<Hits> = receivers
+                .iter()
+                .flat_map(|receiver| turn.hits(receiver).map(|(_, hits)| hits))
+                .collect();
+            parts.push(self.beside(must, seen, |must, seen| {
+                judge::neighbours(&pixels, (0, maps), must, seen)
+            }));
+        }
+        judged.add("neighbours", Judgement::sum(parts), of_spec, time);
+        Ok(())
+    }
+
+    /// What receivers sum up, of the spec's lists.
+    fn sums(
+        &self,
+        turn: &LdmTurn,
+        stages: &mut Stages<'_>,
+        judged: &mut Judged,
+    ) -> Result<(), GpuError> {
+        let times = self.spec.value.times;
+        if self.runs("occlusion") {
+            let seen = self.open(stages)?;
+            let judgement = self.judge_open(turn, &seen);
+            judged.add(
+                "occlusion",
+                judgement,
+                self.share(times.occlusion),
+                stages.time,
+            );
+        }
+        if self.runs("environment") {
+            let seen = self.light(turn, stages)?;
+            let judgement = self.judge_light(turn, &seen);
+            let of_spec = self.share(times.environment);
+            judged.add("environment", judgement, of_spec, stages.time);
+        }
+        Ok(())
+    }
+
+    fn receivers(&self) -> Vec<Receiver> {
+        let askers = self.spec.value.setup.receivers.iter();
+        askers.map(|asker| asker.receiver).collect()
+    }
+
+    fn pixels(&self) -> Vec<u32> {
+        let askers = self.spec.value.setup.receivers.iter();
+        askers.map(|asker| asker.pixel).collect()
+    }
+
+    fn open(&self, stages: &mut Stages<'_>) -> Result<Vec<Open>, GpuError> {
+        stages.occlusion(&self.receivers(), self.spec.value.setup.falloff)
+    }
+
+    fn light(&self, turn: &LdmTurn, stages: &mut Stages<'_>) -> Result<Vec<[f32; 3]>, GpuError> {
+        let directions = self.spec.value.setup.directions;
+        stages.environment(&self.receivers(), (&turn.sky, &turn.lit), directions)
+    }
+
+    fn judge_open(&self, turn: &LdmTurn, seen: &[Open]) -> Judgement {
+        let seen: Vec<(u32, f32)> = seen.iter().map(|open| (open.whole, open.part)).collect();
+        let pixels = self.pixels();
+        self.beside(&turn.open, seen, |must, seen| {
+            judge::open(&pixels, must, seen)
+        })
+    }
+
+    fn judge_light(&self, turn: &LdmTurn, seen: &[[f32; 3]]) -> Judgement {
+        let pixels = self.pixels();
+        self.beside(&turn.light, seen, |must, seen| {
+            judge::light(&pixels, must, seen)
+        })
+    }
+
+    /// All stages from lists that the device made, in several batches if there are several maps:
+    /// a third of the room that all of them need.
+    fn whole(&self, turn: &LdmTurn, judged: &mut Judged) -> Result<Made, GpuError> {
+        let mut made = Made::default();
+        let mut stages = self.stages(turn, budget(turn))?;
+        if self.runs("layers") {
+            made.layers = stages.layers()?;
+            let (maps, layers) = (&turn.maps, &made.layers);
+            let mut judgement = self.beside(&turn.layers, layers, |must, seen| {
+                judge::layers(maps, must, &seen.offsets, &seen.keys)
+            });
+            let sound = judgement.differ() == 0;
+            judgement.note = format!("{}, in {} batches", judgement.note, stages.batches());
+            judged.part(OWN, judgement);
+            if !sound {
+                return Ok(made);
+            }
+        } else {
+            stages.give_layers(&turn.layers)?;
+        }
+        if self.runs("occlusion") {
+            made.open = self.open(&mut stages)?;
+            judged.part(OWN, self.judge_open(turn, &made.open));
+        }
+        if self.runs("environment") {
+            made.light = self.light(turn, &mut stages)?;
+            judged.part(OWN, self.judge_light(turn, &made.light));
+        }
+        Ok(made)
+    }
+}
+
+/// Bytes for a third of a rotation's lists, or for the largest map's.
+fn budget(turn: &LdmTurn) -> u64 {
+    let words = |pixels: u64, keys: u64| 4 * (pixels + 1).max(keys);
+    let offsets = &turn.layers.offsets;
+    let largest = turn.maps.maps.iter().map(|map| {
+        let pixels = map.size.width * map.size.height;
+        let [first, end] = [map.first, map.first + pixels].map(|at| offsets[at as usize]);
+        words(pixels.into(), (end - first).into())
+    });
+    let all = words(turn.maps.pixels.into(), turn.layers.keys.len() as u64);
+    largest.max().unwrap_or(0).max(all / 3)
+}
+
+/// A device's chains as those of the spec are written.
+fn chains(seen: device::Chains, capacity: u32) -> Chains {
+    let link = |link: device::Link| Link {
+        key: link.key,
+        next: link.next,
+    };
+    Chains {
+        heads: seen.heads,
+        links: seen.links.into_iter().map(link).collect(),
+        attempts: u32::try_from(seen.attempts).unwrap_or(u32::MAX),
+        capacity,
+    }
+}
+
+/// Traces map by map, as traces receiver by receiver.
+fn by_receiver(seen: &[Hits], maps: usize) -> Vec<Hits> {
+    let receivers = seen.len() / maps;
+    let of = |receiver: usize| (0..maps).map(move |map| seen[map * receivers + receiver]);
+    (0..receivers).flat_map(of).collect()
+}
