@@ -60,6 +60,21 @@ fn every_list_of_a_closed_mesh_is_voted_for() {
     assert!(vote.error_over_bound <= 1.0 && vote.times > 5000, "{vote}");
 }
 
+#[test]
+fn a_vote_on_nothing_is_no_agreement() {
+    let nothing = MapVote {
+        rays: 7,
+        ..MapVote::default()
+    };
+    assert!(nothing.judgement(None).skipped.is_some());
+    let wrong = MapVote {
+        disagree: 1,
+        ..nothing
+    };
+    let judgement = wrong.judgement(None);
+    assert_eq!((judgement.skipped, judgement.compared), (None, 0));
+}
+
 /// Pixels of 128 steps, as they are where what blocks is small on the lattice.
 fn small() -> LdmRun {
     let mesh = "generate.torus = { radii = [1, 0.4], segments = [24, 12] }\nscale = 1e-4\n\
