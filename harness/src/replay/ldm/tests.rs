@@ -221,22 +221,35 @@ fn embree_is_near() {
     let seen = ask(&run(&loaded, true), 0).expect("Embree is there");
     assert_eq!(seen.vote.disagree, 0, "{:?}", seen.vote.first);
     let off = seen.off.expect("somebody asks");
-    // Two flat walls under one sky: what resolution costs is a few pixels' width of edge.
-    assert!(off.same[0] < 0.06 && off.random[0] < 0.1, "{off}");
-    assert!(
-        off.noise > 0.0 && off.noise < 0.032,
-        "of 256 yes or no: {off}"
-    );
-    assert_eq!(
-        ask(&run(&loaded, true), 0).as_ref().map(|s| s.off),
-        Ok(Some(off)),
-        "seeded"
-    );
+    // The largest variance of a yes or no is a quarter, and that of a mean of 256 a 256th of it.
+    assert!(off.noise > 0.0 && off.noise <= 0.5 / 15.9, "{off}");
+    let again = ask(&run(&loaded, true), 0);
+    assert_eq!(again.map(|s| s.off), Ok(Some(off)), "seeded");
     let other = ask(&run(&loaded, true), 1).expect("Embree is there").off;
     assert_ne!(other.map(|o| o.random), Some(off.random), "by another seed");
-    assert_eq!(
-        other.map(|o| o.same),
-        Some(off.same),
-        "the directions are the scene's"
+    let same = other.map(|o| o.same);
+    assert_eq!(same, Some(off.same), "the directions are the scene's");
+}
+
+/// Nothing is in the way of a ray over a convex mesh, whichever side of it a point is on; what is
+/// left of the distance is that of the directions' own sum from 1.
+#[test]
+fn rays_over_a_ball_meet_nothing() {
+    let ball = "generate.sphere = { radius = 1, segments = [12, 20] }";
+    let text = format!(
+        "purpose = 'x'\nsize = [24, 24]\n[[mesh]]\n{ball}\n[ldm]\ndirections = 64\nresolution = 60"
+    );
+    let entry = Entry::outside(Path::new("ball/scene.toml"));
+    let loaded = load_text(&mut Intake::from_disk(), &entry, None, &text).expect("a scene");
+    let run = run(&loaded, true);
+    let off = ask(&run, 0).expect("Embree is there").off.expect("points");
+    assert!(off.receivers > 100 && off.noise == 0.0, "{off}");
+    // Sums of 64 numbers in f64.
+    assert!(off.same[1] < 1e-12, "{off}");
+    let sums = run.openness.iter().map(|o| (o.value - 1.0).abs());
+    let most = sums.fold(0.0, f64::max);
+    assert!(
+        off.random[1] <= most && off.random[0] > 0.0,
+        "{off}, {most}"
     );
 }

@@ -13,8 +13,7 @@ use crate::replay::ldm::{LdmRun, LdmTurn};
 use crate::scene::load_text;
 
 fn run(keys: &str, mesh: &str) -> LdmRun {
-    let text =
-        format!("purpose = 'x'\nsize = [8, 8]\n[[mesh]]\n{mesh}\n[ldm]\ndirections = 9\n{keys}\n");
+    let text = format!("purpose = 'x'\nsize = [8, 8]\n[[mesh]]\n{mesh}\n[ldm]\n{keys}\n");
     let entry = Entry::outside(Path::new("planted/scene.toml"));
     let loaded = load_text(&mut Intake::from_disk(), &entry, None, &text).expect("a scene");
     LdmRun::new(&loaded, true).expect("within the limits")
@@ -22,7 +21,7 @@ fn run(keys: &str, mesh: &str) -> LdmRun {
 
 fn torus(resolution: u32) -> LdmRun {
     let mesh = "generate.torus = { radii = [1, 0.4], segments = [24, 12] }\nrotate = [30, 10, 0]";
-    run(&format!("resolution = {resolution}"), mesh)
+    run(&format!("directions = 9\nresolution = {resolution}"), mesh)
 }
 
 /// Every pixel of every map.
@@ -61,18 +60,80 @@ fn every_list_of_a_closed_mesh_is_voted_for() {
     assert!(vote.error_over_bound <= 1.0 && vote.times > 5000, "{vote}");
 }
 
-/// A pixel of 128 steps, as it is where what blocks is small on the lattice.
+#[test]
+fn a_vote_on_nothing_is_no_agreement() {
+    let nothing = MapVote {
+        rays: 7,
+        ..MapVote::default()
+    };
+    assert!(nothing.judgement(None).skipped.is_some());
+    let wrong = MapVote {
+        disagree: 1,
+        ..nothing
+    };
+    let judgement = wrong.judgement(None);
+    assert_eq!((judgement.skipped, judgement.compared), (None, 0));
+}
+
+/// Pixels of 128 steps, as they are where what blocks is small on the lattice.
+fn small() -> LdmRun {
+    let mesh = "generate.torus = { radii = [1, 0.4], segments = [24, 12] }\nscale = 1e-4\n\
+                [[mesh]]\nblocks = false\n\
+                generate.faces = { vertices = [[0, -1, -1], [0, -1, 1], [1, -1, 1]], faces = [[0, 1, 2]] }";
+    run("directions = 400\nresolution = 362", mesh)
+}
+
 #[test]
 fn the_smallest_pixels_there_are() {
-    let small = "generate.torus = { radii = [1, 0.4], segments = [24, 12] }\nscale = 1e-4\n\
-                 [[mesh]]\nblocks = false\n\
-                 generate.faces = { vertices = [[0, -1, -1], [0, -1, 1], [1, -1, 1]], faces = [[0, 1, 2]] }";
-    let run = run("resolution = 362", small);
+    let run = small();
     let turn = &run.turns[0];
     assert!(turn.maps.pixel < 129.0, "{}", turn.maps.pixel);
     let vote = voted(&run, &turn.maps, &turn.layers);
     assert_eq!(vote.disagree, 0, "{:?}", vote.first);
-    assert!(vote.keys > 100 && vote.edge < vote.pairs, "{vote}");
+    assert!(vote.keys > 10_000 && vote.edge < vote.pairs, "{vote}");
+}
+
+/// Rays are integers, so they miss the middles of such pixels; how far is known of all points on
+/// their way.
+#[test]
+fn rays_stray_as_far_as_they_say() {
+    let run = small();
+    let maps = &run.turns[0].maps;
+    let mut farthest = 0.0_f64;
+    for map in maps.maps.iter().step_by(7) {
+        let projection = Projection::new(maps, map);
+        for at in [[0, 0], [map.size.width / 2, map.size.height / 3]] {
+            let through = projection.through(at);
+            let way = through
+                .way
+                .expect("the map is in the middle of the lattice");
+            let middle = at.map(|c| f64::from((c << maps.bits) + (1 << (maps.bits - 1))));
+            // 2^23 steps of a direction of 24 bits are half of it; the lattice has four of those.
+            for part in 0..=4 {
+                let point =
+                    [0, 1, 2].map(|i| way.ray.origin[i] + part * (way.ray.direction[i] / 4));
+                if point.iter().any(|c| c.abs() > 1 << 23) {
+                    break;
+                }
+                let place = projection.place(point);
+                let off = [0, 1].map(|i| (place[i] - middle[i]).abs());
+                // A quarter of the direction loses up to three quarters of a step along each axis.
+                let lost = f64::from(part) * 1.3;
+                assert!(
+                    off.iter().all(|off| *off <= through.stray + lost),
+                    "{off:?}"
+                );
+                if part == 0 {
+                    assert!(off.iter().all(|off| *off <= through.stray), "{off:?}");
+                    farthest = farthest.max(off[0]).max(off[1]);
+                }
+            }
+        }
+    }
+    assert!(
+        farthest > 0.3 && farthest < 1.0,
+        "half a step and a bit: {farthest}"
+    );
 }
 
 #[test]
@@ -114,7 +175,7 @@ fn a_list_that_is_wrong_is_noticed() {
 fn intervals_are_narrow() {
     let mesh = "generate.faces = { vertices = [[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], \
                 faces = [[0, 1, 2, 3]] }";
-    let run = run("resolution = 30", mesh);
+    let run = run("directions = 9\nresolution = 30", mesh);
     let turn = &run.turns[0];
     let sound = voted(&run, &turn.maps, &turn.layers);
     assert_eq!(sound.disagree, 0, "{:?}", sound.first);

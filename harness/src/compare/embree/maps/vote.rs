@@ -108,7 +108,10 @@ impl MapVote {
     /// `None` where it is counted only. A vote alone cannot say who errs.
     pub fn judgement(&self, edge_budget: Option<f64>) -> Judgement {
         let cause = (self.disagree > 0).then_some((Cause::OracleDisagreement, self.disagree));
+        let nothing = self.pairs == 0 && self.disagree == 0;
+        let none = "no pixel that was asked about is near a triangle";
         Judgement {
+            skipped: nothing.then(|| none.to_owned()),
             compared: self.pairs,
             causes: cause.into_iter().collect(),
             admitted: self.edge,
