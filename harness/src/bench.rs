@@ -21,6 +21,7 @@ pub mod csv;
 pub mod error;
 mod gpu;
 pub mod grid;
+pub mod ldm;
 pub mod legs;
 pub mod machine;
 pub mod markdown;

@@ -3,6 +3,7 @@
 pub(super) mod abuffer;
 mod files;
 mod grid;
+mod ldm;
 mod legs;
 mod rsm;
 mod stress;
@@ -16,6 +17,8 @@ pub enum Bench {
     Abuffer(abuffer::Args),
     /// Grids: builds and rays against resolution, beside Embree and a BVH
     Grid(grid::Args),
+    /// Layered depth maps: time of making and asking them against their error
+    Ldm(ldm::Args),
     /// Leg against leg: the spec beside adapters, the Embree leg beside bare calls
     Legs(legs::Args),
     /// Indirect light: time of a frame against its error
@@ -29,6 +32,7 @@ pub fn run(bench: &Bench) -> anyhow::Result<Verdict> {
     match bench {
         Bench::Abuffer(args) => abuffer::run(args),
         Bench::Grid(args) => grid::run(args),
+        Bench::Ldm(args) => ldm::run(args),
         Bench::Legs(args) => legs::run(args),
         Bench::Rsm(args) => rsm::run(args),
         Bench::Stress(args) => stress::run(args),

@@ -25,7 +25,7 @@ use crate::compare::{Judgement, compare};
 use crate::observe::{Embree, Observed};
 use crate::plan::LdmPlan;
 use crate::row::Class;
-pub use embree::{Off, SAMPLES, Seen, ask};
+pub use embree::{Off, SAMPLES, Seen, ask, random, same};
 pub use gpu::{LdmLeg, Made};
 pub use setup::{Asker, Setup, Turn};
 pub use spec::{LdmRun, LdmTurn, Times};

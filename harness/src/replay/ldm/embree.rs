@@ -9,9 +9,9 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 use triptych_spec::grid::ray::Ray;
-use triptych_spec::ldm::{Falloff, WEIGHT_BITS, weight};
+use triptych_spec::ldm::{Falloff, Map, WEIGHT_BITS, weight};
 
-use super::setup::Asker;
+use super::setup::{Asker, Setup};
 use super::spec::LdmRun;
 use crate::compare::embree::{MapVote, Sampled, compare_maps};
 use crate::embree::EmbreeError;
@@ -113,8 +113,10 @@ fn off(run: &LdmRun, seed: u64, scene: &RayScene) -> Result<Option<Off>, EmbreeE
     let one = |&at: &usize| {
         let asker = &receivers[at];
         let own = run.openness[at].value;
-        let same = same(run, asker, scene);
-        let (random, variance) = random(run, asker, seed, scene);
+        let maps = run.turns.iter().flat_map(|turn| &turn.maps.maps);
+        let directions = run.setup.directions * run.setup.rotations;
+        let same = same(&run.setup, maps, directions, asker, scene);
+        let (random, variance) = random(&run.setup, asker, (seed, SAMPLES), scene);
         scene.check().map(|()| [own - same, own - random, variance])
     };
     let found: Result<Vec<[f64; 3]>, EmbreeError> = chosen.par_iter().map(one).collect();
@@ -137,48 +139,58 @@ fn off(run: &LdmRun, seed: u64, scene: &RayScene) -> Result<Option<Off>, EmbreeE
     }))
 }
 
-/// What is open by a ray in each map's direction, with the spec's weights.
-fn same(run: &LdmRun, asker: &Asker, scene: &RayScene) -> f64 {
+/// What is open by a ray in each map's direction, with the spec's weights, of a set of so many
+/// directions.
+pub fn same<'m>(
+    setup: &Setup,
+    maps: impl Iterator<Item = &'m Map>,
+    directions: u32,
+    asker: &Asker,
+    scene: &RayScene,
+) -> f64 {
     let receiver = &asker.receiver;
-    let maps = run.turns.iter().flat_map(|turn| &turn.maps.maps);
-    let passes = |map: &triptych_spec::ldm::Map| {
+    let passes = |map: &Map| {
         let weight = weight(map, receiver.normal);
         let side = f64::from(weight.signum());
         if weight == 0 {
             return 0.0;
         }
         let ray = Ray::along(receiver.point, map.direction.map(|c| side * c));
-        f64::from(weight.unsigned_abs()) * passed(run, &ray, scene)
+        f64::from(weight.unsigned_abs()) * passed(setup.falloff, &ray, scene)
     };
     let sum: f64 = maps.map(passes).sum();
-    let directions = run.setup.directions * run.setup.rotations;
     sum * 2.0 / f64::from(directions) / f64::from(1_u32 << WEIGHT_BITS)
 }
 
 /// The mean of random rays, as likely as the cosine with the normal, and the variance of that
 /// mean. A ray is the normal and a point of the unit sphere.
-fn random(run: &LdmRun, asker: &Asker, seed: u64, scene: &RayScene) -> (f64, f64) {
+pub fn random(
+    setup: &Setup,
+    asker: &Asker,
+    (seed, samples): (u64, u32),
+    scene: &RayScene,
+) -> (f64, f64) {
     let normal = normalize(asker.receiver.normal.map(f64::from));
     let mut random = Random::new(seed.wrapping_mul(1 << 32).wrapping_add(asker.pixel.into()));
     let (mut sum, mut squares) = (0.0, 0.0);
-    for _ in 0..SAMPLES {
+    for _ in 0..samples {
         let up = random.signed();
         let (sin, cos) = libm::sincos(TAU * random.unit());
         let out = libm::sqrt(1.0 - up * up);
         let way = add(normal, [out * cos, out * sin, up]);
-        let part = passed(run, &Ray::along(asker.receiver.point, way), scene);
+        let part = passed(setup.falloff, &Ray::along(asker.receiver.point, way), scene);
         sum += part;
         squares += part * part;
     }
-    let count = f64::from(SAMPLES);
+    let count = f64::from(samples);
     let mean = sum / count;
     let variance = (squares / count - mean * mean).max(0.0) / (count - 1.0);
     (mean, variance)
 }
 
 /// Which part of what comes along a ray passes.
-fn passed(run: &LdmRun, ray: &Ray, scene: &RayScene) -> f64 {
-    match run.setup.falloff {
+fn passed(falloff: Falloff, ray: &Ray, scene: &RayScene) -> f64 {
+    match falloff {
         Falloff::None => f64::from(u8::from(!scene.occluded(ray))),
         Falloff::Distance { most, power } => scene.closest(ray).map_or(1.0, |hit| {
             let steps = f64::from(hit.t) * length(ray.direction.map(f64::from));

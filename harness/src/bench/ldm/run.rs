@@ -1,0 +1,191 @@
+//! All scenes and settings.
+
+use std::path::PathBuf;
+
+use super::super::legs::stations;
+use super::super::{Ceilings, Machine, Progress};
+use super::case::Case;
+use super::{SCENES, Sweep, gpu};
+use crate::corpus::Entry;
+use crate::mesh::Intake;
+use crate::replay::gpu::Adapter;
+use crate::scene::{LoadError, Loaded, load_entry, load_text};
+
+/// Numbers of directions, at a scene's own resolution.
+pub const DIRECTIONS: [u32; 6] = [16, 64, 128, 256, 512, 1024];
+
+/// Resolutions, with a scene's own number of directions.
+pub const RESOLUTIONS: [u32; 5] = [25, 50, 100, 200, 400];
+
+/// Pairs of a triangle and a map, and of a receiver and a map, up to which a software driver is
+/// measured: some seconds.
+const OF_SOFTWARE: [u64; 2] = [1 << 23, 1 << 26];
+
+/// What is measured, and how.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The scenes; `None`: those of [`SCENES`].
+    pub scenes: Option<Vec<Entry>>,
+    /// How often every triangle is cut into four, beside not at all.
+    pub cuts: u32,
+    /// Rounds that count, at least one.
+    pub runs: u32,
+    /// Today, year-month-day.
+    pub date: String,
+}
+
+/// Measures maps on these adapters.
+///
+/// # Errors
+/// One line for a scene that cannot be read; a mesh that is missing skips its scene.
+pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Result<Sweep, String> {
+    let mut sweep = Sweep {
+        date: options.date.clone(),
+        machine: Machine::here(adapters),
+        runs: options.runs,
+        rows: Vec::new(),
+        remarks: Vec::new(),
+    };
+    let stations = stations(adapters, &mut sweep.remarks);
+    let ceilings: Vec<Option<Ceilings>> = stations
+        .iter()
+        .map(|s| Ceilings::of(&s.adapter.gpu, &s.kernels, options.runs.min(5)).ok())
+        .map(|measured| measured.map(|(ceilings, _)| ceilings))
+        .collect();
+    for loaded in &sweep.load(options)? {
+        for cuts in [0, options.cuts]
+            .into_iter()
+            .take(1 + usize::from(options.cuts > 0))
+        {
+            let name = match cuts {
+                0 => loaded.name.clone(),
+                _ => format!("{}, each triangle as {}", loaded.name, 4_u32.pow(cuts)),
+            };
+            let mut case = match Case::new(&name, loaded, cuts) {
+                Ok(case) => case,
+                Err(why) => {
+                    sweep.not(&format!("{name}: {why}"));
+                    continue;
+                }
+            };
+            let settings = settings(&case);
+            let steps = settings.len() * stations.len();
+            progress.begin(&name, u32::try_from(steps).unwrap_or(u32::MAX));
+            for (directions, resolution) in settings {
+                let turn = match case.turn(directions, resolution) {
+                    Ok(turn) => turn,
+                    Err(why) => {
+                        sweep.not(&format!("{name}: {why}"));
+                        continue;
+                    }
+                };
+                for (station, ceilings) in stations.iter().zip(&ceilings) {
+                    let software = station.adapter.gpu.info.device_type == wgpu::DeviceType::Cpu;
+                    if software && !is_small(&case, directions) {
+                        progress.step();
+                        continue;
+                    }
+                    let of = (station, ceilings.as_ref());
+                    match gpu::measure(of, &case, &turn.maps, directions, options.runs) {
+                        Ok(row) => sweep.rows.push(row),
+                        Err(why) => {
+                            let adapter = &station.adapter.gpu.name;
+                            sweep.not(&format!(
+                                "{name}: {directions} directions, {resolution} pixels: gpu@{adapter}: {why}"
+                            ));
+                        }
+                    }
+                    progress.step();
+                }
+            }
+        }
+    }
+    progress.end();
+    Ok(sweep)
+}
+
+/// The scene's own directions and resolution, then one of them changed.
+fn settings(case: &Case<'_>) -> Vec<(u32, u32)> {
+    let own = (case.setup.directions, case.setup.resolution);
+    let mut all = vec![own];
+    let directions = DIRECTIONS.map(|directions| (directions, own.1));
+    let resolutions = RESOLUTIONS.map(|resolution| (own.0, resolution));
+    for setting in directions.into_iter().chain(resolutions) {
+        if !all.contains(&setting) {
+            all.push(setting);
+        }
+    }
+    all
+}
+
+fn is_small(case: &Case<'_>, directions: u32) -> bool {
+    let maps = u64::from(directions);
+    let triangles = case.setup.blockers.triangles.len() as u64;
+    let receivers = case.receivers.len() as u64;
+    triangles * maps <= OF_SOFTWARE[0] && receivers * maps <= OF_SOFTWARE[1]
+}
+
+impl Sweep {
+    /// The scenes that can be read.
+    fn load(&mut self, options: &Options) -> Result<Vec<Loaded>, String> {
+        let mut all = Vec::new();
+        let read: Vec<(String, Result<Loaded, LoadError>)> = match &options.scenes {
+            Some(scenes) => scenes
+                .iter()
+                .map(|entry| (entry.name.clone(), load_entry(entry, None)))
+                .collect(),
+            None => SCENES
+                .iter()
+                .map(|(name, text)| ((*name).to_owned(), own(name, text)))
+                .collect(),
+        };
+        for (name, loaded) in read {
+            match loaded {
+                Ok(loaded) if loaded.file.ldm.is_none() => {
+                    return Err(format!("{name} has no [ldm]; name a scene that has"));
+                }
+                Ok(loaded) => all.push(loaded),
+                Err(missing @ LoadError::Missing { .. }) => {
+                    self.not(&format!("{name}: {missing}"));
+                }
+                Err(error) => return Err(error.to_string()),
+            }
+        }
+        Ok(all)
+    }
+
+    fn not(&mut self, why: &str) {
+        self.remarks.push(format!("not measured: {why}"));
+    }
+}
+
+/// A scene of ours.
+fn own(name: &str, text: &str) -> Result<Loaded, LoadError> {
+    let path = PathBuf::from(format!("harness/src/bench/ldm/{name}.toml"));
+    let entry = Entry {
+        name: name.to_owned(),
+        ..Entry::outside(&path)
+    };
+    load_text(&mut Intake::from_disk(), &entry, None, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn our_scenes_are_of_the_papers_size() {
+        for (name, text) in SCENES {
+            match own(name, text) {
+                Ok(loaded) => {
+                    let size = loaded.scene.size;
+                    assert_eq!([size.width, size.height], [800, 800], "{name}");
+                    let ldm = loaded.file.ldm.expect("maps");
+                    assert_eq!(ldm.get_ref().directions.0, 512, "{name}");
+                }
+                Err(LoadError::Missing { .. }) => {}
+                Err(error) => panic!("{name}: {error}"),
+            }
+        }
+    }
+}

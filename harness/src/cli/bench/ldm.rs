@@ -1,0 +1,75 @@
+//! `triptych bench ldm`.
+
+use std::io::{Write, stdout};
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+
+use super::super::adapters::OnAdapters;
+use super::super::run_info::today;
+use super::super::scenes::Scenes;
+use super::super::{Verdict, reports};
+use crate::bench::Progress;
+use crate::bench::ldm::{Options, csv, lines, page, run as measure, svg};
+use crate::corpus;
+use crate::text::clean;
+
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  \
+    triptych bench ldm                        a Sponza and a ball of fur, as the paper has them\n  \
+    triptych bench ldm --cuts 1               and every triangle cut into four\n  \
+    triptych bench ldm ldm/bunny --adapter llvmpipe --runs 3\n\n\
+    Exit code 0 whatever is measured: a benchmark judges no machine. 2: nothing could be measured.")]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, or scene files with an [ldm]; without one a Sponza and a ball of fur")))]
+pub struct Args {
+    #[command(flatten)]
+    scenes: Scenes,
+    #[command(flatten)]
+    on: OnAdapters,
+    /// Rounds that count, after two to warm up
+    #[arg(long, value_name = "N", default_value = "15")]
+    runs: NonZeroU32,
+    /// Measure each scene again with every triangle cut into four, so often
+    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u32).range(0..=3))]
+    cuts: u32,
+    /// Where Markdown, CSV and the front go [default: reports/out/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    let corpus = corpus::list(&corpus::root())?;
+    let scenes = args.scenes.if_any(&corpus)?;
+    let folder = args.out.clone().unwrap_or_else(reports::bench);
+    // The names of the files end with the machine's.
+    reports::can_write([&folder.join("ldm")])?;
+    let adapters = args.on.usable()?.open;
+    let options = Options {
+        scenes,
+        cuts: args.cuts,
+        runs: args.runs.get(),
+        date: today(),
+    };
+    let sweep = measure(&adapters, &options, &Progress::new());
+    let sweep = sweep.map_err(anyhow::Error::msg)?;
+    let mut out = stdout();
+    for line in lines(&sweep) {
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    for remark in &sweep.remarks {
+        writeln!(out, "{}", clean(remark))?;
+    }
+    anyhow::ensure!(
+        !sweep.rows.is_empty(),
+        "nothing was measured; see what was not, and why"
+    );
+    let files = [
+        ("csv", csv(&sweep)),
+        ("svg", svg(&sweep)),
+        ("md", page(&sweep)),
+    ];
+    for (end, text) in files {
+        reports::write(&folder.join(format!("{}.{end}", sweep.stem())), &text)?;
+    }
+    writeln!(out, "Results: {}", folder.display())?;
+    Ok(Verdict::Agree)
+}
