@@ -17,6 +17,8 @@ use crate::config;
 
 #[path = "adapters/extremes.rs"]
 mod extremes;
+#[path = "adapters/replica.rs"]
+mod replica;
 
 /// Room for everything.
 const AMPLE: u64 = u64::MAX;

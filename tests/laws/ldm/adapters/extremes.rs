@@ -5,7 +5,7 @@ use triptych_spec::ldm::RESOLUTION_MAX;
 
 use super::*;
 
-fn maps_around(mesh: &Blockers, sets: &[[f64; 3]], resolution: u32) -> Maps {
+pub(super) fn maps_around(mesh: &Blockers, sets: &[[f64; 3]], resolution: u32) -> Maps {
     let bounds = around(&mesh.vertices);
     Maps::new(sets, bounds, bounds, resolution).expect("within the limits")
 }
