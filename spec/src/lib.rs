@@ -13,7 +13,7 @@
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 //! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |
-//! | [`ldm`] | layers, chain, neighbours, occlusion, environment | none yet |
+//! | [`ldm`] | layers, chain, neighbours, occlusion, environment | `gpu/src/ldm.wgsl` |
 #![forbid(unsafe_code)]
 
 pub mod abuffer;

@@ -13,7 +13,7 @@ use crate::scene::Loaded;
 const SAMPLE: usize = 1 << 11;
 
 /// Random rays of each of them.
-pub(super) const SAMPLES: u32 = 1024;
+pub(super) const SAMPLES: u32 = 4096;
 
 /// What rays say is open.
 struct Reference {

@@ -51,7 +51,7 @@ fn chains_in_parts() {
     let maps = maps_around(&mesh, &[[0.0, 0.0, 1.0]], 8);
     let made = layers(&maps, &mesh).unwrap();
     let length = longest(&maps, &made);
-    assert!(length * 11 > STEPS as usize, "{length}");
+    assert!(length as u64 * 11 > STEPS, "{length}");
     let check = everywhere((&maps, &mesh), AMPLE, |stages, name| {
         lists_agree(stages, &maps, &made, name)
     });
