@@ -85,38 +85,44 @@ impl<'g> Stages<'g> {
         Ok(())
     }
 
-    /// Stage `chain`: the paper's lists, in order. Of all keys `capacity` have room.
-    pub fn chain(&mut self, capacity: u32) -> Result<Chains, GpuError> {
+    /// Stage `chain`: the paper's lists. Of all keys `capacity` have room. Those of a batch are put
+    /// in order if `sound` says so of them, for which so many entries had room: a kernel follows
+    /// no links that may lead anywhere.
+    pub fn chain(
+        &mut self,
+        capacity: u32,
+        sound: impl Fn(&Chains, u32) -> bool,
+    ) -> Result<Chains, GpuError> {
         self.time = Duration::ZERO;
         let mut chains = Chains::default();
         for span in spans(self.device.all, self.device.room / PROGRESS) {
             let gpu = self.device.gpu;
             // As if all batches had one pool: what attempts have used up is gone.
             let base = u64::from(capacity).min(chains.attempts);
-            let left = capacity - u32::try_from(base).expect("at most the capacity");
+            let base = u32::try_from(base).expect("at most the capacity");
+            let left = capacity - base;
             let heads = gpu.filled("heads", span.len(), EOL)?;
             let nodes = gpu.storage("entries of lists", 8 * u64::from(left))?;
             let counter = gpu.storage("counter", 4)?;
             let buffers = [("heads", &heads), ("nodes", &nodes), ("counter", &counter)];
-            let drawn = self
-                .device
-                .draw(["chain", "chain_large"], (&span, left), &buffers)?;
+            let kernels = ["chain", "chain_large"];
+            let drawn = self.device.draw(kernels, (&span, left), &buffers)?;
             self.time += self.device.run(&drawn)?;
-            self.relink(span.told(self.device.told), [&heads, &nodes])?;
-            let attempts = self.device.gpu.word(&counter, 0)?;
-            let own: Vec<u32> = gpu.read(&heads, span.len() as usize)?;
-            let links: Vec<Link> = gpu.read(&nodes, attempts.min(left) as usize)?;
-            let base = u32::try_from(base).expect("at most the capacity");
-            let moved = |at: u32| match at {
-                EOL => EOL,
-                _ => at.wrapping_add(base),
+            let attempts = gpu.word(&counter, 0)?;
+            let stored = attempts.min(left) as usize;
+            let read = || -> Result<Chains, GpuError> {
+                Ok(Chains {
+                    heads: gpu.read(&heads, span.len() as usize)?,
+                    links: gpu.read(&nodes, stored)?,
+                    attempts: attempts.into(),
+                })
             };
-            chains.heads.extend(own.into_iter().map(moved));
-            chains.links.extend(links.into_iter().map(|link| Link {
-                next: moved(link.next),
-                ..link
-            }));
-            chains.attempts += u64::from(attempts);
+            let mut own = read()?;
+            if sound(&own, left) {
+                self.relink(span.told(self.device.told), [&heads, &nodes])?;
+                own = read()?;
+            }
+            chains.append(own, base);
         }
         Ok(chains)
     }
@@ -140,5 +146,21 @@ impl<'g> Stages<'g> {
             adapter: gpu.name.clone(),
             stage: "chain",
         })
+    }
+}
+
+impl Chains {
+    /// Those of further pixels, whose first entry has this address among all.
+    fn append(&mut self, other: Self, base: u32) {
+        let moved = |at: u32| match at {
+            EOL => EOL,
+            _ => at.wrapping_add(base),
+        };
+        self.heads.extend(other.heads.into_iter().map(moved));
+        self.links.extend(other.links.into_iter().map(|link| Link {
+            next: moved(link.next),
+            ..link
+        }));
+        self.attempts += other.attempts;
     }
 }

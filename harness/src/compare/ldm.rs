@@ -20,7 +20,7 @@ use super::Judgement;
 use crate::cause::Cause;
 use crate::row::Class;
 
-pub use chains::chains;
+pub use chains::{chains, may_follow};
 pub use found::{light, neighbours, open};
 pub use lists::layers;
 

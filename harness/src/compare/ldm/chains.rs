@@ -64,6 +64,11 @@ pub fn chains(maps: &Maps, spec: &Layers, seen: &Chains) -> Judgement {
     judgement
 }
 
+/// Whether every list ends, and no entry is in two: a kernel may follow them.
+pub fn may_follow(seen: &Chains) -> bool {
+    certify(&lists(seen)).faults.is_empty()
+}
+
 /// Whether a sorted list holds nothing that another does not hold as often.
 fn is_part(part: &[u32], whole: &[u32]) -> bool {
     let mut rest = whole.iter();

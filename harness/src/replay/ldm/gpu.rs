@@ -142,7 +142,9 @@ impl LdmLeg<'_> {
         if self.runs("chain") {
             let all = u32::try_from(must.keys.len()).unwrap_or(u32::MAX);
             for (capacity, stage) in [(all, "chain"), (all / 2, "overflow")] {
-                let seen = chains(stages.chain(capacity)?, capacity);
+                let sound =
+                    |own: &device::Chains, room| judge::may_follow(&chains(own.clone(), room));
+                let seen = chains(stages.chain(capacity, sound)?, capacity);
                 let judgement =
                     self.beside(must, seen, |must, seen| judge::chains(maps, must, seen));
                 judged.add(stage, judgement, of_spec, stages.time);

@@ -92,7 +92,7 @@ fn overflowing_chains() {
     let cases = [0, 1, total / 2, total - 1].map(|c| budgets.map(|b| (c, b)));
     for (capacity, budget) in cases.into_iter().flatten() {
         let check = everywhere((&maps, &mesh), budget, |stages, name| {
-            let chains = stages.chain(capacity).expect("room");
+            let chains = stages.chain(capacity, |_, _| true).expect("room");
             prop_assert_eq!(chains.attempts, u64::from(total), "{}", name);
             prop_assert_eq!(chains.links.len(), capacity as usize);
             let mut held = 0;

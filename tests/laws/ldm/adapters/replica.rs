@@ -63,7 +63,7 @@ fn what_drivers_make_of_it() {
     for (gpu, _) in devices() {
         let kernels = Kernels::with_foreign(Sources::shipped(false), &foreign);
         let mut stages = Stages::new(gpu, &kernels, &maps, &mesh, AMPLE).expect("room");
-        let chains = stages.chain(total).expect("room");
+        let chains = stages.chain(total, |_, _| true).expect("room");
         assert_eq!(chains.attempts, u64::from(total), "{}", gpu.name);
         let right = |pixel: &u32| linked(&chains, *pixel as usize) == made.list(*pixel);
         let count = (0..maps.pixels).filter(right).count();
