@@ -159,6 +159,12 @@ pub const MEASURED: &[Measured] = &[
         spec: None,
     },
     Measured {
+        file: "hbao",
+        over: None,
+        entries: &["prepare", "horizons", "denoise"],
+        spec: None,
+    },
+    Measured {
         file: "nearest",
         over: Some("abuffer"),
         entries: &[
