@@ -53,6 +53,8 @@ mod camera;
 mod gpu;
 #[path = "laws/grid.rs"]
 mod grid;
+#[path = "laws/hbao.rs"]
+mod hbao;
 #[path = "laws/ldm.rs"]
 mod ldm;
 #[path = "laws/loose.rs"]

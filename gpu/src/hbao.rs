@@ -224,12 +224,14 @@ impl<'g> Hbao<'g> {
     }
 
     /// What the last run found open of each pixel's hemisphere, weighted by the cosine: 1 for all
-    /// of it, and where nothing is seen.
+    /// of it, and where nothing is seen. Of few slices what is blocked can come to more than
+    /// all; then it is 0.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub fn openness(&self) -> Result<Vec<f32>, GpuError> {
-        self.gpu.read(&self.opened, self.pixels)
+        let opened: Vec<f32> = self.gpu.read(&self.opened, self.pixels)?;
+        Ok(opened.into_iter().map(|open| open.max(0.0)).collect())
     }
 }
 

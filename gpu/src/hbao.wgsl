@@ -49,19 +49,20 @@ fn horizons(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
     let right = vec3(1.0 - ahead.x * ahead.x * a, -ahead.x * ahead.y * a, -ahead.x);
     let down = vec3(-ahead.x * ahead.y * a, 1.0 - ahead.y * ahead.y * a, -ahead.y);
     let own = (pixel.y % TILE * TILE + pixel.x % TILE) * told.slices;
-    var sum = vec2(0.0);
+    var blocked = 0.0;
     for (var slice = 0u; slice < told.slices; slice += 1u) {
         let turn = turns[own + slice];
         let out = turn.x * right + turn.y * down;
         let side = side_of(place, out);
         // One that the normal stands on has nothing.
         if side.length > 1e-6 {
-            sum += walk(place, side, turn.z);
-            sum += walk(place, side_of(place, -out), turn.z);
+            blocked += walk(place, side, turn.z);
+            blocked += walk(place, side_of(place, -out), turn.z);
         }
     }
-    // Over all that these slices have, which few of them do not have exactly 1 of.
-    opened[at] = 1.0 - select(0.0, sum.x / sum.y, sum.y > 0.0);
+    // Off all that is open, not a sum of what is: a few slices of an open hemisphere have not
+    // exactly all of it. So a mean over slices is what more of them find, and planes are open.
+    opened[at] = 1.0 - blocked / f32(told.slices);
 }
 
 // How far two points of a surface may be off each other's planes, over their distance. Of planes

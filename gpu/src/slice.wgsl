@@ -118,17 +118,16 @@ fn standing(place: Place, side: Side, off: vec3<f32>, distance: f32) -> vec2<f32
     return select(turned, vec2(1.0, 0.0), turned.y < 0.0);
 }
 
-// What a side blocks, and all that it has. Each sample that raises the horizon blocks what it
+// What a side blocks. Each sample that raises the horizon blocks what it
 // raises it by, as far as its own distance lets it: that is where rays between the old
 // horizon and the new one end, as nothing nearer stopped them.
-fn walk(place: Place, side: Side, jitter: f32) -> vec2<f32> {
+fn walk(place: Place, side: Side, jitter: f32) -> f32 {
     var horizon = -side.normal.y / side.length;
-    let open = arc(side.normal, horizon, side.normal.x / side.length);
+    var above = arc(side.normal, horizon, side.normal.x / side.length);
     var blocked = 0.0;
-    var above = open;
     let far = reach(place, side);
     if far < 1.0 {
-        return vec2(0.0, open);
+        return blocked;
     }
     for (var i = 0u; i < told.steps; i += 1u) {
         // Denser where things are near; never the pixel itself.
@@ -153,5 +152,5 @@ fn walk(place: Place, side: Side, jitter: f32) -> vec2<f32> {
             horizon = at.x;
         }
     }
-    return vec2(blocked, open);
+    return blocked;
 }
