@@ -120,7 +120,8 @@ fn standing(place: Place, side: Side, off: vec3<f32>, distance: f32) -> vec2<f32
 
 // What a side blocks. Each sample that raises the horizon blocks what it
 // raises it by, as far as its own distance lets it: that is where rays between the old
-// horizon and the new one end, as nothing nearer stopped them.
+// horizon and the new one end, as nothing nearer stopped them. Some may end nearer, at what is
+// hidden behind the sample, or go on behind it: of that a height field knows nothing.
 fn walk(place: Place, side: Side, jitter: f32) -> f32 {
     var horizon = -side.normal.y / side.length;
     var above = arc(side.normal, horizon, side.normal.x / side.length);
