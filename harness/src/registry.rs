@@ -146,7 +146,8 @@ pub struct Measured {
     /// Its compute entry points.
     pub entries: &'static [&'static str],
     /// The function of the spec that says what they compute; its documentation begins
-    /// with "Technique" and its name. `None`: they compute nothing that is shown.
+    /// with "Technique" and its name. `None`: none does; they compute nothing that is shown, or
+    /// what laws hold against closed forms.
     pub spec: Option<&'static str>,
 }
 

@@ -70,6 +70,9 @@ proptest! {
     fn kernels_find_what_the_twin_finds(shapes in shapes(), eye in eye(), settings in settings()) {
         let screen = eye.screen(&shapes);
         let must: Vec<_> = (0..).take(screen.pixels.len()).map(|pixel| twin(&screen, settings, pixel)).collect();
+        // Of at most 110 samples, each may be within 2^-12 on either side of four borders.
+        let certain = must.iter().filter(|must| must.certain).count();
+        prop_assert!(must.len() < 20 || 2 * certain >= must.len(), "{} of {}", certain, must.len());
         for (name, found) in openness(&screen, settings) {
             for (pixel, (must, found)) in must.iter().zip(found).enumerate() {
                 let off = (f64::from(found) - must.open).abs();
