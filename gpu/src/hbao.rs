@@ -22,7 +22,7 @@ use crate::kernel::Kernels;
 use crate::timer::Timer;
 
 pub use screen::{Pixel, Screen};
-pub use turns::{TILE, turns};
+pub use turns::{TURNED, turns};
 
 /// Levels of the pyramid.
 pub const LEVELS: usize = 8;

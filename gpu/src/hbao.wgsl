@@ -5,7 +5,7 @@
 //#import slice
 
 // Pixels of a tile along x and y, no two of which have the same slices.
-const TILE: u32 = 4u;
+const TURNED: u32 = 4u;
 
 // One texel of any level.
 @compute @workgroup_size(64)
@@ -43,21 +43,21 @@ fn horizons(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
     if told.near == 1u {
         ahead = normalize(here);
     }
-    let place = Place(pixel, here, -ahead, surface.xyz);
+    let spot = Spot(pixel, here, -ahead, surface.xyz);
     // At right angles to `ahead`, whose z is positive (Duff et al. 2017).
     let a = 1.0 / (1.0 + ahead.z);
     let right = vec3(1.0 - ahead.x * ahead.x * a, -ahead.x * ahead.y * a, -ahead.x);
     let down = vec3(-ahead.x * ahead.y * a, 1.0 - ahead.y * ahead.y * a, -ahead.y);
-    let own = (pixel.y % TILE * TILE + pixel.x % TILE) * told.slices;
+    let own = (pixel.y % TURNED * TURNED + pixel.x % TURNED) * told.slices;
     var blocked = 0.0;
     for (var slice = 0u; slice < told.slices; slice += 1u) {
         let turn = turns[own + slice];
         let out = turn.x * right + turn.y * down;
-        let side = side_of(place, out);
+        let side = side_of(spot, out);
         // One that the normal stands on has nothing.
         if side.length > 1e-6 {
-            blocked += walk(place, side, turn.z);
-            blocked += walk(place, side_of(place, -out), turn.z);
+            blocked += walk(spot, side, turn.z);
+            blocked += walk(spot, side_of(spot, -out), turn.z);
         }
     }
     // Off all that is open, not a sum of what is: a few slices of an open hemisphere have not

@@ -3,7 +3,7 @@
 //#import screen
 
 // What is looked from.
-struct Place {
+struct Spot {
     pixel: vec2<u32>,
     point: vec3<f32>,
     // Units: to the viewer, and the normal.
@@ -22,13 +22,13 @@ struct Side {
     length: f32,
 }
 
-fn side_of(place: Place, out: vec3<f32>) -> Side {
+fn side_of(spot: Spot, out: vec3<f32>) -> Side {
     var way = told.scale * out.xy;
     if told.near == 1u {
-        way -= told.scale * (place.point.xy / place.point.z) * out.z;
+        way -= told.scale * (spot.point.xy / spot.point.z) * out.z;
     }
     // Seen edge-on, or from behind by what rounding does.
-    let normal = vec2(max(dot(place.normal, place.viewer), 0.0), dot(place.normal, out));
+    let normal = vec2(max(dot(spot.normal, spot.viewer), 0.0), dot(spot.normal, out));
     return Side(out, normalize(way), normal, length(normal));
 }
 
@@ -41,23 +41,23 @@ fn border(pixel: vec2<u32>, way: vec2<f32>) -> f32 {
 
 // Pixels to the farthest that may show what is near enough to block: where the slice's
 // tangent to the sphere of that radius goes.
-fn reach(place: Place, side: Side) -> f32 {
-    let whole = border(place.pixel, side.way);
+fn reach(spot: Spot, side: Side) -> f32 {
+    let whole = border(spot.pixel, side.way);
     if told.most == 0.0 {
         return whole;
     }
     if told.near == 0u {
         return min(whole, told.most * length(told.scale * side.out.xy));
     }
-    let sine = told.most / length(place.point);
+    let sine = told.most / length(spot.point);
     if sine >= 1.0 {
         return whole;
     }
-    let ray = sine * side.out - sqrt(1.0 - sine * sine) * place.viewer;
+    let ray = sine * side.out - sqrt(1.0 - sine * sine) * spot.viewer;
     if ray.z <= 0.0 {
         return whole;
     }
-    let off = told.scale * (ray.xy / ray.z - place.point.xy / place.point.z);
+    let off = told.scale * (ray.xy / ray.z - spot.point.xy / spot.point.z);
     return min(whole, length(off));
 }
 
@@ -102,13 +102,13 @@ fn arc(normal: vec2<f32>, c: f32, s: f32) -> f32 {
 // Cosine and sine of where a sample stands; cosine -1 if it is below the tangent plane. Pixels
 // are beside the slice a little, so their height over that plane is kept, which is what makes
 // planes open; it stands for two angles, and beyond the normal the plain one is taken.
-fn standing(place: Place, side: Side, off: vec3<f32>, distance: f32) -> vec2<f32> {
-    let height = dot(place.normal, off);
+fn standing(spot: Spot, side: Side, off: vec3<f32>, distance: f32) -> vec2<f32> {
+    let height = dot(spot.normal, off);
     if height <= 0.0 {
         return vec2(-1.0, 0.0);
     }
     let unit = side.normal / side.length;
-    let plain = min(dot(place.viewer, off) / distance, 1.0);
+    let plain = min(dot(spot.viewer, off) / distance, 1.0);
     if unit.y > 0.0 && plain > unit.x {
         return vec2(plain, sqrt(1.0 - plain * plain));
     }
@@ -122,11 +122,11 @@ fn standing(place: Place, side: Side, off: vec3<f32>, distance: f32) -> vec2<f32
 // raises it by, as far as its own distance lets it: that is where rays between the old
 // horizon and the new one end, as nothing nearer stopped them. Some may end nearer, at what is
 // hidden behind the sample, or go on behind it: of that a height field knows nothing.
-fn walk(place: Place, side: Side, jitter: f32) -> f32 {
+fn walk(spot: Spot, side: Side, jitter: f32) -> f32 {
     var horizon = -side.normal.y / side.length;
     var above = arc(side.normal, horizon, side.normal.x / side.length);
     var blocked = 0.0;
-    let far = reach(place, side);
+    let far = reach(spot, side);
     if far < 1.0 {
         return blocked;
     }
@@ -134,7 +134,7 @@ fn walk(place: Place, side: Side, jitter: f32) -> f32 {
         // Denser where things are near; never the pixel itself.
         let part = (f32(i) + jitter) / f32(told.steps);
         let pixels = 1.0 + (far - 1.0) * part * part;
-        let there = floor(vec2<f32>(place.pixel) + 0.5 + pixels * side.way);
+        let there = floor(vec2<f32>(spot.pixel) + 0.5 + pixels * side.way);
         let pixel = vec2<u32>(clamp(there, vec2(0.0), vec2<f32>(size() - 1u)));
         let level = min(max(firstLeadingBit(u32(pixels)), told.detail) - told.detail, LEVELS - 1u);
         let texel = pixel >> vec2(level);
@@ -142,10 +142,10 @@ fn walk(place: Place, side: Side, jitter: f32) -> f32 {
         if depth >= NOWHERE {
             continue;
         }
-        let off = point(chosen(texel, level), depth) - place.point;
+        let off = point(chosen(texel, level), depth) - spot.point;
         let distance = length(off);
         let keeps = kept(distance);
-        let at = standing(place, side, off, distance);
+        let at = standing(spot, side, off, distance);
         if keeps > 0.0 && at.x > horizon {
             let below = arc(side.normal, at.x, at.y);
             blocked += keeps * (above - below);

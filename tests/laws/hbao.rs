@@ -4,6 +4,8 @@
 mod adapters;
 #[path = "hbao/closed_forms.rs"]
 mod closed_forms;
+#[path = "hbao/means.rs"]
+mod means;
 #[path = "hbao/runs.rs"]
 mod runs;
 #[path = "hbao/scenes.rs"]

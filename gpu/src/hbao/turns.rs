@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 /// Side of the tile of pixels that have different slices.
-pub const TILE: u32 = 4;
+pub const TURNED: u32 = 4;
 
 /// The order of a tile's pixels: neighbours are far apart (Bayer 1973).
 const ORDER: [u32; 16] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];

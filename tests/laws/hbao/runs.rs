@@ -9,10 +9,9 @@ use triptych_spec::scene::Size;
 use super::scenes::{Eye, Shape};
 use super::{openness, settings};
 
-/// What is beyond a limit is named; nothing seen, or a single pixel, is open.
-#[test]
-fn limits_are_named() {
-    let screen = Screen {
+/// A pixel.
+fn one() -> Screen {
+    Screen {
         size: Size {
             width: 1,
             height: 1,
@@ -23,7 +22,12 @@ fn limits_are_named() {
             normal: [0.0, 0.0, -1.0],
             depth: 7.0,
         }],
-    };
+    }
+}
+
+#[test]
+fn a_pixel_alone_and_nothing_are_open() {
+    let screen = one();
     let plain = settings(Falloff::None, 1, 1);
     assert!(
         openness(&screen, plain)
@@ -43,6 +47,12 @@ fn limits_are_named() {
             .iter()
             .all(|(_, open)| *open == [1.0])
     );
+}
+
+#[test]
+fn limits_are_named() {
+    let screen = one();
+    let plain = settings(Falloff::None, 1, 1);
     let (gpu, kernels) = &crate::adapters::devices()[0];
     let power = Falloff::Distance { most: 1, power: 9 };
     for (settings, needed) in [

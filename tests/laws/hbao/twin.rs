@@ -1,6 +1,6 @@
 //! The same in `f64`, with angles: what a pixel finds, and how far an `f32` evaluation may be.
 
-use triptych_gpu::hbao::{LEVELS, Screen, Settings, TILE, turns};
+use triptych_gpu::hbao::{LEVELS, Screen, Settings, TURNED, turns};
 use triptych_spec::ldm::Falloff;
 
 use super::scenes::{V, dot, kept, plus, unit};
@@ -80,7 +80,7 @@ pub fn twin(screen: &Screen, settings: Settings, pixel: u32) -> Found {
         return state.found;
     }
     let [right, down] = frame(ahead);
-    let first = (y % TILE * TILE + x % TILE) * settings.slices;
+    let first = (y % TURNED * TURNED + x % TURNED) * settings.slices;
     let turns = turns(settings.slices);
     for slice in first..first + settings.slices {
         let [c, s, jitter, _] = turns[slice as usize].map(f64::from);
