@@ -24,6 +24,7 @@
 //! | `rsm::loose` | whatever WGSL allows stays inside the bounds of all stages, and comes near them |
 //! | `rsm::adapters` | random scenes give the spec's decisions, and colours within bounds, on every adapter |
 //! | `rsm::limits`, `rsm::extremes` | what makes no scene is named; whatever numbers it has, any other is drawn |
+//! | `hbao` | horizons in screen space: an `f64` twin; planes, corners, rays around a post; what is too far; means of slices and of pixels |
 //! | `ldm::directions` | layered depth maps: equal areas, small diameters, no line twice, furnace; rotations |
 //! | `ldm::places` | axes from their definition; where points are, within what rounding moves them |
 //! | `ldm::chains` | linked lists: the same keys; capacity; conservation |
@@ -53,6 +54,8 @@ mod camera;
 mod gpu;
 #[path = "laws/grid.rs"]
 mod grid;
+#[path = "laws/hbao.rs"]
+mod hbao;
 #[path = "laws/ldm.rs"]
 mod ldm;
 #[path = "laws/loose.rs"]

@@ -12,6 +12,7 @@ mod dispatch;
 pub mod error;
 pub mod frame;
 pub mod grid;
+pub mod hbao;
 pub mod kernel;
 pub mod ldm;
 pub mod lists;

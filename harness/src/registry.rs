@@ -175,7 +175,8 @@ pub struct Measured {
     /// Its compute entry points.
     pub entries: &'static [&'static str],
     /// The function of the spec that says what they compute; its documentation begins
-    /// with "Technique" and its name. `None`: they compute nothing that is shown.
+    /// with "Technique" and its name. `None`: none does; they compute nothing that is shown, or
+    /// what laws hold against closed forms.
     pub spec: Option<&'static str>,
 }
 
@@ -185,6 +186,12 @@ pub const MEASURED: &[Measured] = &[
         file: "ceiling",
         over: None,
         entries: &["copy", "exchange"],
+        spec: None,
+    },
+    Measured {
+        file: "hbao",
+        over: None,
+        entries: &["prepare", "horizons", "denoise"],
         spec: None,
     },
     Measured {

@@ -76,15 +76,28 @@ fn every_module_is_reached() {
 }
 
 /// Every file of WGSL is a family's, or measured, or imported, or stands in for one that
-/// is.
+/// is; one of a test is taken in by the file of Rust beside it.
 #[test]
 fn every_wgsl_file_is_reached() {
     let mut files = files();
-    let linker = files.iter().find(|f| f.name == "gpu/src/wgsl.rs");
+    let linker = files.iter().find(|f| f.name == "gpu/src/wgsl/shipped.rs");
     let linker = linker.expect("there is a linker").text().to_owned();
     let readme = files.iter().find(|f| f.name == "README.md");
     let readme = readme.expect("there is a README").text().to_owned();
+    let sources: Vec<_> = files.extract_if(.., |f| f.extension() == "rs").collect();
     files.retain(|f| f.extension() == "wgsl");
+    let of_tests = files.extract_if(.., |f| f.name.starts_with("tests/"));
+    let alone: Vec<String> = of_tests
+        .filter(|f| {
+            let rust = f.name.replace(".wgsl", ".rs");
+            let file = f.name.rsplit('/').next().unwrap_or_default();
+            let taken = format!("include_str!(\"{file}\")");
+            let beside = sources.iter().find(|own| own.name == rust);
+            beside.is_none_or(|own| !own.text().contains(&taken))
+        })
+        .map(|f| format!("{}: no test takes it in", f.name))
+        .collect();
+    assert_none(&alone);
     let examples = files.extract_if(.., |f| f.name.starts_with("harness/examples/"));
     let unnamed: Vec<String> = examples
         .filter(|f| !readme.contains(&f.name))
