@@ -41,10 +41,10 @@ pub const DENOISE_MAX: u32 = 8;
 /// more than a sixteenth of its distance along x and y.
 pub const DETAIL: u32 = 3;
 
-/// What a kernel is told. Twin: `Told` in `screen.wgsl`.
+/// What a kernel is told. Twin: `Sight` in `screen.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct Told {
+struct Sight {
     width: u32,
     height: u32,
     slices: u32,
@@ -150,7 +150,7 @@ impl<'g> Hbao<'g> {
         let (told, texels) = told(screen, settings);
         let items = told.items;
         let each = |entry: &str, items: u32, buffers: &[(&str, &wgpu::Buffer)]| {
-            ready((gpu, kernels), entry, Told { items, ..told }, buffers)
+            ready((gpu, kernels), entry, Sight { items, ..told }, buffers)
         };
         let seen = gpu.upload("what is seen", &screen.pixels)?;
         let turns = gpu.upload("slices", &turns(settings.slices))?;
@@ -239,7 +239,7 @@ impl<'g> Hbao<'g> {
 fn ready(
     (gpu, kernels): (&Gpu, &Kernels),
     entry: &str,
-    told: Told,
+    told: Sight,
     buffers: &[(&str, &wgpu::Buffer)],
 ) -> Result<Ready, GpuError> {
     let uniform = gpu.uniform("told", &told)?;
@@ -250,7 +250,7 @@ fn ready(
 }
 
 /// What kernels are told of pixels, and how many texels the pyramid has.
-fn told(screen: &Screen, settings: Settings) -> (Told, u32) {
+fn told(screen: &Screen, settings: Settings) -> (Sight, u32) {
     let (width, height) = (screen.size.width, screen.size.height);
     let mut texels = 0;
     let firsts = std::array::from_fn(|level| {
@@ -263,7 +263,7 @@ fn told(screen: &Screen, settings: Settings) -> (Told, u32) {
         Falloff::None => (0, 0),
         Falloff::Distance { most, power } => (most.max(1), power),
     };
-    let told = Told {
+    let told = Sight {
         width,
         height,
         slices: settings.slices,

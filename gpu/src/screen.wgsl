@@ -1,6 +1,6 @@
 // What an eye sees, in view space: x right, y down, z away from the viewer, in lattice steps.
 
-struct Told {
+struct Sight {
     width: u32,
     height: u32,
     slices: u32,
@@ -22,7 +22,7 @@ struct Told {
     firsts: array<vec4<u32>, 2>,
 }
 
-@group(0) @binding(0) var<uniform> told: Told;
+@group(0) @binding(0) var<uniform> told: Sight;
 // Unit normals, and depths; a normal of zero where nothing is seen.
 @group(0) @binding(1) var<storage, read> seen: array<vec4<f32>>;
 // For each of 16 pixels, its slices: cosine and sine, and where in its part a step is.

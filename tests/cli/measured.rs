@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Place;
 use super::frames::{WALL, only, rows};
 
-/// 160 triangles that lie on each other: where an axis has one cell, all are in each list, which
+/// 600 triangles that lie on each other: where an axis has one cell, all are in each list, which
 /// takes an odd number of passes to be put in order, and the last leaves them elsewhere. Rays are
 /// then searched in those, which are compared with the spec's.
 #[test]
@@ -29,18 +29,18 @@ fn grids_are_measured() {
         let build = row["what"] == "build";
         assert_eq!(
             number("items"),
-            if build { 160.0 } else { 2048.0 },
+            if build { 600.0 } else { 2048.0 },
             "{row:?}"
         );
         assert!(number("time_ms") > 0.0, "{row:?}");
-        assert!(number("memory_bytes") > 160.0 * 48.0, "{row:?}");
+        assert!(number("memory_bytes") > 600.0 * 48.0, "{row:?}");
         assert!(number("fraction_of_bound") > 0.0, "{row:?}");
         let unlike = if build { ["", ""] } else { ["0", "2048"] };
         assert_eq!(["unlike", "unlike_of"].map(|column| row[column]), unlike);
     }
     for leg in ["spec", "\"embree, one thread\"", "\"obvhs, one thread\""] {
-        let of_leg = csv.lines().filter(|line| line.contains(",build,160,"));
-        let of_leg = of_leg.filter(|line| line.contains(&format!("160,{leg},")));
+        let of_leg = csv.lines().filter(|line| line.contains(",build,600,"));
+        let of_leg = of_leg.filter(|line| line.contains(&format!("600,{leg},")));
         assert_eq!(of_leg.count(), 3, "{leg}: {csv}");
     }
     let page = only(&place.root.join("t"), "md");
@@ -72,6 +72,71 @@ fn only_blockers_block_rays() {
     }
 }
 
+/// Maps over directions and resolutions; finer ones are nearer to rays in the same directions.
+#[test]
+fn maps_are_measured() {
+    let place = Place::new("bench-ldm");
+    place.write("own/room.toml", ROOM);
+    let command = ["bench", "ldm", "own/room.toml", "--cuts", "1"];
+    let files = ["--runs", "1", "--out", "t", "--adapter", "swiftshader"];
+    place.run(&[&command[..], &files].concat()).expect(0);
+    let csv = only(&place.root.join("t"), "csv").replace("\"own/room, each triangle as 4\"", "cut");
+    let rows = rows(&csv);
+    let parts = ["frame", "count", "scan", "fill", "sort", "ask"];
+    assert_eq!(rows.len(), 2 * 12 * parts.len(), "{csv}");
+    let number = |row: &BTreeMap<&str, &str>, column: &str| row[column].parse::<f64>();
+    let frames = rows.iter().filter(|row| row["part"] == "frame");
+    let error = |scene: &str, resolution: &str| {
+        let mut own = frames.clone();
+        let own = own.find(|row| {
+            row["scene"].contains(scene)
+                && row["directions"] == "8"
+                && row["resolution"] == resolution
+        });
+        number(own.expect("it is measured"), "rmse_same").expect("a number")
+    };
+    for scene in ["room", "cut"] {
+        let [coarse, fine] = ["25", "400"].map(|resolution| error(scene, resolution));
+        assert!(fine < coarse / 2.0, "{coarse} and {fine}: {csv}");
+    }
+    for row in frames {
+        let number = |column| number(row, column).expect("a number");
+        let lists = 4.0 * (number("pixels") + number("keys"));
+        assert!(
+            number("lists_bytes").to_bits() == lists.to_bits(),
+            "{row:?}"
+        );
+        assert!(
+            number("keys") > 0.0 && number("memory_bytes") > lists,
+            "{row:?}"
+        );
+    }
+    let page = only(&place.root.join("t"), "md");
+    assert!(page.contains("| keys a pixel |"), "{page}");
+}
+
+/// Both techniques, at each of six distances, with all their settings.
+#[test]
+fn maps_have_a_rival() {
+    let place = Place::new("bench-ldm-rival");
+    place.write("own/room.toml", ROOM);
+    let command = ["bench", "ldm", "own/room.toml", "--rival"];
+    let files = ["--runs", "1", "--out", "t", "--adapter", "swiftshader"];
+    let ran = place.run(&[&command[..], &files].concat()).expect(0);
+    let csv = only(&place.root.join("t"), "csv");
+    let rows = rows(&csv);
+    let of = |technique| {
+        rows.iter()
+            .filter(|row| row["technique"] == technique)
+            .count()
+    };
+    assert_eq!([of("maps"), of("horizons")], [6 * 5, 6 * 6], "{csv}");
+    let verdicts = ran
+        .stdout
+        .matches("the least error of maps and of horizons");
+    assert_eq!(verdicts.count(), 6, "{}", ran.stdout);
+}
+
 /// The heading and the rows of an adapter, whose cells have no commas.
 fn of_adapter(csv: &str) -> String {
     let lines = csv.lines().enumerate();
@@ -81,9 +146,28 @@ fn of_adapter(csv: &str) -> String {
 }
 
 const STACK: &str = r#"
-purpose = "80 quads, each a little above the other"
+purpose = "300 quads, each a little above the other"
 size = [8, 8]
 [[mesh]]
-generate.stack = { layers = 80, size = [4, 4], spacing = 0.002 }
+generate.stack = { layers = 300, size = [4, 4], spacing = 0.002 }
 [grid]
+"#;
+
+const ROOM: &str = r#"
+purpose = "a box on a floor"
+size = [24, 16]
+[camera]
+eye = [3, 3, 5]
+target = [0, 0.5, 0]
+fov = 40
+near = 0.5
+far = 20
+[[mesh]]
+generate.box = { size = [1, 1, 1] }
+translate = [0, 0.5, 0]
+[[mesh]]
+generate.faces = { vertices = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 1, 2, 3]] }
+[ldm]
+directions = 8
+resolution = 20
 "#;

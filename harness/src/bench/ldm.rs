@@ -13,6 +13,7 @@
 mod case;
 mod front;
 mod gpu;
+pub mod rival;
 mod run;
 mod table;
 
@@ -40,6 +41,8 @@ pub struct Sweep {
     pub runs: u32,
     /// What was measured.
     pub rows: Vec<Row>,
+    /// Maps and their rival, if that was asked for.
+    pub contests: Vec<rival::Contest>,
     /// What was not, and why; whose clock is not the device's.
     pub remarks: Vec<String>,
 }
@@ -86,6 +89,11 @@ pub struct Row {
 impl Sweep {
     /// The stem of the files.
     pub fn stem(&self) -> String {
-        format!("ldm-{}-{}", self.date, self.machine.slug)
+        let what = if self.contests.is_empty() {
+            "ldm"
+        } else {
+            "ldm-rival"
+        };
+        format!("{what}-{}-{}", self.date, self.machine.slug)
     }
 }

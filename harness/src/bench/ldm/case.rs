@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use triptych_spec::grid::Blockers;
-use triptych_spec::ldm::{Open, Receiver, openness};
+use triptych_spec::ldm::{Falloff, Open, Receiver, openness};
 
 use crate::embree::rays::{RayAnswers, RayScene};
 use crate::replay::ldm::{Asker, Setup, Turn, random, same};
@@ -72,12 +72,51 @@ impl<'l> Case<'l> {
             receivers,
             sample,
         };
-        let seed = loaded.file.seed;
-        case.random = case.each(|asker| {
-            let (open, variance) = random(&case.setup, asker, (seed, SAMPLES), &case.rays);
+        case.ask()?;
+        Ok(case)
+    }
+
+    /// What random rays say is open, with the falloff that is set.
+    fn ask(&mut self) -> Result<(), String> {
+        let seed = self.loaded.file.seed;
+        self.random = self.each(|asker| {
+            let (open, variance) = random(&self.setup, asker, (seed, SAMPLES), &self.rays);
             Reference { open, variance }
         })?;
-        Ok(case)
+        self.same.clear();
+        Ok(())
+    }
+
+    /// Another falloff, for all that follows.
+    ///
+    /// # Errors
+    /// What Embree reports.
+    pub(super) fn fade(&mut self, falloff: Falloff) -> Result<(), String> {
+        self.setup.falloff = falloff;
+        self.ask()
+    }
+
+    /// Length of the diagonal of what blocks, in steps.
+    pub(super) fn diagonal(&self) -> f64 {
+        let end = |of: fn(i32, i32) -> i32, start: i32, axis: usize| {
+            let all = self.setup.blockers.vertices.iter();
+            f64::from(all.fold(start, |end, v| of(end, v[axis])))
+        };
+        let side = |axis| end(i32::max, i32::MIN, axis) - end(i32::min, i32::MAX, axis);
+        [0, 1, 2]
+            .map(|axis| side(axis).powi(2))
+            .iter()
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// How far what is open over the sample is from random rays, of each, and the root of the mean
+    /// variance of those.
+    pub(super) fn from_random(&self, own: &[f64]) -> (Vec<f64>, f64) {
+        let off = own.iter().zip(&self.random).map(|(a, b)| a - b.open);
+        let variance: f64 = self.random.iter().map(|r| r.variance).sum();
+        let noise = (variance / self.random.len().max(1) as f64).sqrt();
+        (off.collect(), noise)
     }
 
     /// Something of every receiver of the sample, by Embree.
@@ -115,17 +154,16 @@ impl<'l> Case<'l> {
             .map(|at| openness(&opened[*at], directions).value);
         let own: Vec<f64> = own.collect();
         let same = own.iter().zip(&self.same[&directions]).map(|(a, b)| a - b);
-        let random = own.iter().zip(&self.random).map(|(a, b)| a - b.open);
-        let variance: f64 = self.random.iter().map(|r| r.variance).sum();
+        let (random, noise) = self.from_random(&own);
         Off {
             same: apart(same),
-            random: apart(random),
-            noise: (variance / self.random.len() as f64).sqrt(),
+            random: apart(random.into_iter()),
+            noise,
         }
     }
 }
 
-fn apart(all: impl Iterator<Item = f64>) -> [f64; 2] {
+pub(super) fn apart(all: impl Iterator<Item = f64>) -> [f64; 2] {
     let (mut squares, mut most, mut count) = (0.0, 0.0_f64, 0.0);
     for off in all {
         squares += off * off;

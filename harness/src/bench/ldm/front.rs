@@ -121,6 +121,7 @@ mod tests {
                 row(64, 25, 0.0),
                 row(64, 100, 1e-3),
             ],
+            contests: Vec::new(),
             remarks: Vec::new(),
         }
     }

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::super::legs::stations;
+use super::super::legs::{Station, stations};
 use super::super::{Ceilings, Machine, Progress};
 use super::case::Case;
+use super::rival::{self, Contest};
 use super::{SCENES, Sweep, gpu};
 use crate::corpus::Entry;
 use crate::mesh::Intake;
@@ -28,6 +29,8 @@ pub struct Options {
     pub scenes: Option<Vec<Entry>>,
     /// How often every triangle is cut into four, beside not at all.
     pub cuts: u32,
+    /// Whether maps are held against horizons, at their own resolution, in place of sweeps.
+    pub rival: bool,
     /// Rounds that count, at least one.
     pub runs: u32,
     /// Today, year-month-day.
@@ -44,6 +47,7 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
         machine: Machine::here(adapters),
         runs: options.runs,
         rows: Vec::new(),
+        contests: Vec::new(),
         remarks: Vec::new(),
     };
     let stations = stations(adapters, &mut sweep.remarks);
@@ -68,6 +72,10 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
                     continue;
                 }
             };
+            if options.rival {
+                sweep.contend(&mut case, &stations, options.runs, progress);
+                continue;
+            }
             let settings = settings(&case);
             let steps = settings.len() * stations.len();
             progress.begin(&name, u32::try_from(steps).unwrap_or(u32::MAX));
@@ -80,8 +88,7 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
                     }
                 };
                 for (station, ceilings) in stations.iter().zip(&ceilings) {
-                    let software = station.adapter.gpu.info.device_type == wgpu::DeviceType::Cpu;
-                    if software && !is_small(&case, directions) {
+                    if !is_fit(station, &case, directions) {
                         progress.step();
                         continue;
                     }
@@ -118,14 +125,67 @@ fn settings(case: &Case<'_>) -> Vec<(u32, u32)> {
     all
 }
 
-fn is_small(case: &Case<'_>, directions: u32) -> bool {
+/// Whether an adapter is no software driver, or there is little to do.
+fn is_fit(station: &Station<'_>, case: &Case<'_>, directions: u32) -> bool {
     let maps = u64::from(directions);
     let triangles = case.setup.blockers.triangles.len() as u64;
     let receivers = case.receivers.len() as u64;
-    triangles * maps <= OF_SOFTWARE[0] && receivers * maps <= OF_SOFTWARE[1]
+    let is_little = triangles * maps <= OF_SOFTWARE[0] && receivers * maps <= OF_SOFTWARE[1];
+    station.adapter.gpu.info.device_type != wgpu::DeviceType::Cpu || is_little
 }
 
 impl Sweep {
+    /// Maps and horizons, over distances.
+    fn contend(
+        &mut self,
+        case: &mut Case<'_>,
+        stations: &[Station<'_>],
+        runs: u32,
+        progress: &Progress,
+    ) {
+        let resolution = case.setup.resolution;
+        let fars: Vec<_> = rival::fars(case).collect();
+        progress.begin(&case.name, u32::try_from(fars.len()).expect("few"));
+        for (far, falloff) in fars {
+            if let Err(why) = case.fade(falloff) {
+                self.not(&format!("{}: {why}", case.name));
+                continue;
+            }
+            for directions in rival::DIRECTIONS {
+                let turn = match case.turn(directions, resolution) {
+                    Ok(turn) => turn,
+                    Err(why) => {
+                        self.not(&format!("{}: {why}", case.name));
+                        continue;
+                    }
+                };
+                for station in stations.iter().filter(|s| is_fit(s, case, directions)) {
+                    let of = (station, None);
+                    match gpu::measure(of, case, &turn.maps, directions, runs) {
+                        Ok(row) => self.contests.push(Contest {
+                            scene: row.scene,
+                            leg: format!("gpu@{}", station.adapter.gpu.name),
+                            far,
+                            technique: "maps",
+                            setting: format!("{directions} at {resolution}"),
+                            time: row.frame,
+                            random: row.random,
+                            noise: row.noise,
+                        }),
+                        Err(why) => self.not(&format!("{}: maps: {why}", case.name)),
+                    }
+                }
+            }
+            for station in stations {
+                match rival::horizons(station, case, far, runs) {
+                    Ok(rows) => self.contests.extend(rows),
+                    Err(why) => self.not(&format!("{}: horizons: {why}", case.name)),
+                }
+            }
+            progress.step();
+        }
+    }
+
     /// The scenes that can be read.
     fn load(&mut self, options: &Options) -> Result<Vec<Loaded>, String> {
         let mut all = Vec::new();

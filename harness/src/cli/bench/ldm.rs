@@ -9,7 +9,7 @@ use super::super::run_info::today;
 use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
 use crate::bench::Progress;
-use crate::bench::ldm::{Options, csv, lines, page, run as measure, svg};
+use crate::bench::ldm::{Options, csv, lines, page, rival, run as measure, svg};
 use crate::corpus;
 use crate::text::clean;
 
@@ -17,7 +17,8 @@ use crate::text::clean;
 #[command(after_help = "Examples:\n  \
     triptych bench ldm                        a Sponza and a ball of fur, as the paper has them\n  \
     triptych bench ldm --cuts 1               and every triangle cut into four\n  \
-    triptych bench ldm ldm/bunny --adapter llvmpipe --runs 3\n\n\
+    triptych bench ldm ldm/bunny --adapter llvmpipe --runs 3\n  \
+    triptych bench ldm --rival                maps against horizons of the view, at equal time\n\n\
     Exit code 0 whatever is measured: a benchmark judges no machine. 2: nothing could be measured.")]
 #[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, or scene files with an [ldm]; without one a Sponza and a ball of fur")))]
 pub struct Args {
@@ -31,6 +32,9 @@ pub struct Args {
     /// Measure each scene again with every triangle cut into four, so often
     #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u32).range(0..=3))]
     cuts: u32,
+    /// Hold maps against horizon-based ambient occlusion in screen space, over distances
+    #[arg(long, conflicts_with = "cuts")]
+    rival: bool,
     /// Where Markdown, CSV and the front go [default: reports/out/bench]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -46,27 +50,36 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let options = Options {
         scenes,
         cuts: args.cuts,
+        rival: args.rival,
         runs: args.runs.get(),
         date: today(),
     };
     let sweep = measure(&adapters, &options, &Progress::new());
     let sweep = sweep.map_err(anyhow::Error::msg)?;
     let mut out = stdout();
-    for line in lines(&sweep) {
+    let shown = if args.rival {
+        rival::lines(&sweep)
+    } else {
+        lines(&sweep)
+    };
+    for line in shown {
         writeln!(out, "{}", line.trim_end())?;
     }
     for remark in &sweep.remarks {
         writeln!(out, "{}", clean(remark))?;
     }
     anyhow::ensure!(
-        !sweep.rows.is_empty(),
+        !(sweep.rows.is_empty() && sweep.contests.is_empty()),
         "nothing was measured; see what was not, and why"
     );
-    let files = [
-        ("csv", csv(&sweep)),
-        ("svg", svg(&sweep)),
-        ("md", page(&sweep)),
-    ];
+    let files = match args.rival {
+        true => vec![("csv", rival::csv(&sweep)), ("md", rival::page(&sweep))],
+        false => vec![
+            ("csv", csv(&sweep)),
+            ("svg", svg(&sweep)),
+            ("md", page(&sweep)),
+        ],
+    };
     for (end, text) in files {
         reports::write(&folder.join(format!("{}.{end}", sweep.stem())), &text)?;
     }
