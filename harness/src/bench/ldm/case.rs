@@ -112,7 +112,7 @@ impl<'l> Case<'l> {
 
     /// How far what is open over the sample is from random rays, of each, and the root of the mean
     /// variance of those.
-    pub(super) fn from_random(&self, own: &[f64]) -> (Vec<f64>, f64) {
+    pub(super) fn off_random(&self, own: &[f64]) -> (Vec<f64>, f64) {
         let off = own.iter().zip(&self.random).map(|(a, b)| a - b.open);
         let variance: f64 = self.random.iter().map(|r| r.variance).sum();
         let noise = (variance / self.random.len().max(1) as f64).sqrt();
@@ -154,7 +154,7 @@ impl<'l> Case<'l> {
             .map(|at| openness(&opened[*at], directions).value);
         let own: Vec<f64> = own.collect();
         let same = own.iter().zip(&self.same[&directions]).map(|(a, b)| a - b);
-        let (random, noise) = self.from_random(&own);
+        let (random, noise) = self.off_random(&own);
         Off {
             same: apart(same),
             random: apart(random.into_iter()),

@@ -44,21 +44,7 @@ pub(super) fn measure(
     let kernels = Kernels::trusted(native, |sources| sources);
     let asking = (&case.receivers[..], case.setup.falloff);
     let timed = Timed::new(gpu, &kernels, (maps, blockers), &made, asking).map_err(words)?;
-    let timer = Timer::new(gpu, &station.clock, 5).map_err(words)?;
-    let mut parts = [const { Vec::new() }; 5];
-    let mut frames = Vec::new();
-    for round in 0..WARM_UP + runs {
-        if gpu.info.device_type != wgpu::DeviceType::Cpu {
-            wake(|| timed.time(&timer).map(drop)).map_err(words)?;
-        }
-        let seconds = timed.time(&timer).map_err(words)?;
-        if round >= WARM_UP {
-            frames.push(1000.0 * seconds.iter().sum::<f64>());
-            for (part, seconds) in parts.iter_mut().zip(seconds) {
-                part.push(1000.0 * seconds);
-            }
-        }
-    }
+    let (frames, parts) = rounds(station, &timed, runs).map_err(words)?;
     if timed.layers().map_err(words)? != made {
         return Err("lists unlike those of the checked run".to_owned());
     }
@@ -73,7 +59,6 @@ pub(super) fn measure(
     check_sums(case, (maps, &made), &opened)?;
     let off = case.off(directions, &opened);
     let (pixels, keys) = (u64::from(maps.pixels), made.keys.len() as u64);
-    let parts = parts.map(Spread::of);
     let bounds = ceilings.map(|ceilings| {
         let build: f64 = parts[..4].iter().map(|part| part.median).sum();
         let of = |work, milliseconds: f64| 1000.0 * ceilings.bound(work).1 / milliseconds;
@@ -92,7 +77,7 @@ pub(super) fn measure(
         receivers: case.receivers.len() as u64,
         pixels,
         keys,
-        frame: Spread::of(frames),
+        frame: frames,
         parts: Span::ALL.map(name).into_iter().zip(parts).collect(),
         memory: [4 * (pixels + keys), timed.bytes],
         of_bound: bounds,
@@ -100,6 +85,31 @@ pub(super) fn measure(
         random: off.random,
         noise: off.noise,
     })
+}
+
+/// Milliseconds of a frame and of its parts.
+fn rounds(
+    station: &Station<'_>,
+    timed: &Timed<'_>,
+    runs: u32,
+) -> Result<(Spread, [Spread; 5]), GpuError> {
+    let gpu = &station.adapter.gpu;
+    let timer = Timer::new(gpu, &station.clock, 5)?;
+    let mut parts = [const { Vec::new() }; 5];
+    let mut frames = Vec::new();
+    for round in 0..WARM_UP + runs {
+        if gpu.info.device_type != wgpu::DeviceType::Cpu {
+            wake(|| timed.time(&timer).map(drop))?;
+        }
+        let seconds = timed.time(&timer)?;
+        if round >= WARM_UP {
+            frames.push(1000.0 * seconds.iter().sum::<f64>());
+            for (part, seconds) in parts.iter_mut().zip(seconds) {
+                part.push(1000.0 * seconds);
+            }
+        }
+    }
+    Ok((Spread::of(frames), parts.map(Spread::of)))
 }
 
 /// A part's name in tables.

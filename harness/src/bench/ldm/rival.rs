@@ -109,7 +109,7 @@ pub(super) fn horizons(
             f64::from(open[pixel as usize])
         };
         let own: Vec<f64> = case.sample.iter().map(at).collect();
-        let (random, noise) = case.from_random(&own);
+        let (random, noise) = case.off_random(&own);
         all.push(Contest {
             scene: case.name.clone(),
             leg: format!("gpu@{}", gpu.name),

@@ -1,5 +1,7 @@
 //! A GPU leg of a scene of maps: every stage from the spec's input, then from the device's own.
 
+mod own;
+
 use std::time::Duration;
 
 use triptych_gpu::error::GpuError;
@@ -17,9 +19,6 @@ use crate::replay::gpu::Adapter;
 use crate::replay::judged::Judged;
 use crate::replay::rows::Rows;
 use crate::row::Class;
-
-/// What the rows of stages from a device's own lists are about.
-const OWN: &str = "end to end";
 
 /// Traces that are compared at once: 12 bytes each on both sides.
 const TRACES: usize = 1 << 22;
@@ -55,12 +54,7 @@ impl LdmLeg<'_> {
     /// Whatever the device reports.
     pub fn run(&self, rows: &mut Rows) -> Result<Vec<Made>, GpuError> {
         self.each(rows)?;
-        let mut judged = Judged::default();
-        let turns = self.spec.value.turns.iter();
-        let made: Result<Vec<Made>, GpuError> =
-            turns.map(|turn| self.whole(turn, &mut judged)).collect();
-        judged.rows(&self.spec.label, &self.label(), rows);
-        made
+        self.end_to_end(rows)
     }
 
     /// Adds a row for each stage from the spec's input.
@@ -245,50 +239,6 @@ impl LdmLeg<'_> {
             judge::light(&pixels, must, seen)
         })
     }
-
-    /// All stages from lists that the device made, in several batches if there are several maps:
-    /// a third of the room that all of them need.
-    fn whole(&self, turn: &LdmTurn, judged: &mut Judged) -> Result<Made, GpuError> {
-        let mut made = Made::default();
-        let mut stages = self.stages(turn, budget(turn))?;
-        if self.runs("layers") {
-            made.layers = stages.layers()?;
-            let (maps, layers) = (&turn.maps, &made.layers);
-            let mut judgement = self.beside(&turn.layers, layers, |must, seen| {
-                judge::layers(maps, must, &seen.offsets, &seen.keys)
-            });
-            let sound = judgement.differ() == 0;
-            judgement.note = format!("{}, in {} batches", judgement.note, stages.batches());
-            judged.part(OWN, judgement);
-            if !sound {
-                return Ok(made);
-            }
-        } else {
-            stages.give_layers(&turn.layers)?;
-        }
-        if self.runs("occlusion") {
-            made.open = self.open(&mut stages)?;
-            judged.part(OWN, self.judge_open(turn, &made.open));
-        }
-        if self.runs("environment") {
-            made.light = self.light(turn, &mut stages)?;
-            judged.part(OWN, self.judge_light(turn, &made.light));
-        }
-        Ok(made)
-    }
-}
-
-/// Bytes for a third of a rotation's lists, or for the largest map's.
-fn budget(turn: &LdmTurn) -> u64 {
-    let words = |pixels: u64, keys: u64| 4 * (pixels + 1).max(keys);
-    let offsets = &turn.layers.offsets;
-    let largest = turn.maps.maps.iter().map(|map| {
-        let pixels = map.size.width * map.size.height;
-        let [first, end] = [map.first, map.first + pixels].map(|at| offsets[at as usize]);
-        words(pixels.into(), (end - first).into())
-    });
-    let all = words(turn.maps.pixels.into(), turn.layers.keys.len() as u64);
-    largest.max().unwrap_or(0).max(all / 3)
 }
 
 /// A device's chains as those of the spec are written.
