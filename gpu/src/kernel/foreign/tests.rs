@@ -38,6 +38,7 @@ fn every_skeleton_is_a_kernel() {
         let block = match stage.file {
             "grid" => "cells: Cells",
             "rsm" => "parameters: Parameters",
+            "ldm" => "told: Told",
             _ => "frame: Frame",
         };
         let block = format!("@binding(0) var<uniform> {block}");
