@@ -135,7 +135,7 @@ fn planted_bugs_are_outside_the_band() {
     let defects = [
         ("place", at, missing, Cause::Coverage),
         ("place", at, moved, Cause::Coverage),
-        ("triangle", key.0, key.1, Cause::DepthKey),
+        ("depth", key.0, key.1, Cause::DepthKey),
     ];
     for scene in ["abuffer/mixed", "raster/jittered-grid"] {
         for (file, find, replace, cause) in defects {
