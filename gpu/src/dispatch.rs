@@ -10,6 +10,9 @@ use crate::timer::Writes;
 /// Most workgroups along a dimension of a dispatch (WebGPU's default).
 const GROUPS: u32 = 65_535;
 
+/// Most workgroups of a dispatch of ours, in rows.
+pub(crate) const GROUPS_MAX: u32 = GROUPS * GROUPS;
+
 /// A dispatch that can be recorded any number of times.
 pub(crate) struct Ready {
     pipeline: wgpu::ComputePipeline,

@@ -96,8 +96,7 @@ impl Plan {
 
     /// Why a pass does not run; `None` if it does.
     pub fn skipped(&self, name: &str) -> Option<String> {
-        let pass = self.passes.iter().find(|p| p.name == name)?;
-        (!pass.runs).then(|| format!("plan: {}", pass.reason))
+        skipped(&self.passes, name)
     }
 }
 
@@ -144,6 +143,33 @@ impl GridPlan {
     }
 }
 
+/// Every stage of a chain, by what needs it, or by why nothing does.
+fn decided(
+    chain: Chain,
+    skip: bool,
+    needed: impl Fn(&str) -> Result<String, &'static str>,
+) -> Vec<Pass> {
+    let pass = |stage: &crate::registry::Stage| {
+        let needed = needed(stage.name);
+        Pass {
+            name: stage.name,
+            runs: needed.is_ok() || !skip,
+            reason: match (needed, skip) {
+                (Ok(why), _) => why,
+                (Err(why), true) => why.to_owned(),
+                (Err(why), false) => format!("{why}, but nothing is skipped"),
+            },
+        }
+    };
+    stages_of(chain).map(pass).collect()
+}
+
+/// Why a pass does not run; `None` if it does.
+fn skipped(passes: &[Pass], name: &str) -> Option<String> {
+    let pass = passes.iter().find(|pass| pass.name == name)?;
+    (!pass.runs).then(|| format!("plan: {}", pass.reason))
+}
+
 /// What a scene with an `[rsm]` needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RsmPlan {
@@ -166,27 +192,14 @@ impl RsmPlan {
             "block" | "blur" => Ok(format!("{blocking} triangles block indirect light")),
             _ => see(),
         };
-        let pass = |stage: &crate::registry::Stage| {
-            let needed = needed(stage.name);
-            Pass {
-                name: stage.name,
-                runs: needed.is_ok() || !skip,
-                reason: match (needed, skip) {
-                    (Ok(why), _) => why,
-                    (Err(why), true) => why.to_owned(),
-                    (Err(why), false) => format!("{why}, but nothing is skipped"),
-                },
-            }
-        };
         Self {
-            passes: stages_of(Chain::Indirect).map(pass).collect(),
+            passes: decided(Chain::Indirect, skip, needed),
         }
     }
 
     /// Why a pass does not run; `None` if it does.
     pub fn skipped(&self, name: &str) -> Option<String> {
-        let pass = self.passes.iter().find(|p| p.name == name)?;
-        (!pass.runs).then(|| format!("plan: {}", pass.reason))
+        skipped(&self.passes, name)
     }
 }
 
@@ -211,26 +224,13 @@ impl LdmPlan {
             "layers" | "chain" => Ok(format!("{blocking} triangles in {maps} maps")),
             _ => Ok(format!("{seen} triangles are seen")),
         };
-        let pass = |stage: &crate::registry::Stage| {
-            let needed = needed(stage.name);
-            Pass {
-                name: stage.name,
-                runs: needed.is_ok() || !skip,
-                reason: match (needed, skip) {
-                    (Ok(why), _) => why,
-                    (Err(why), true) => why.to_owned(),
-                    (Err(why), false) => format!("{why}, but nothing is skipped"),
-                },
-            }
-        };
         Self {
-            passes: stages_of(Chain::Maps).map(pass).collect(),
+            passes: decided(Chain::Maps, skip, needed),
         }
     }
 
     /// Why a pass does not run; `None` if it does.
     pub fn skipped(&self, name: &str) -> Option<String> {
-        let pass = self.passes.iter().find(|p| p.name == name)?;
-        (!pass.runs).then(|| format!("plan: {}", pass.reason))
+        skipped(&self.passes, name)
     }
 }

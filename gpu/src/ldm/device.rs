@@ -8,7 +8,7 @@ use triptych_spec::ldm::Maps;
 use super::batch::Span;
 use super::{LARGE_AT_ONCE, MAPS_AT_ONCE, Packed, Told};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
+use crate::dispatch::{GROUPS_MAX, Ready};
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::kernel::Kernels;
@@ -162,11 +162,14 @@ impl<'g> Device<'g> {
 
     fn product(&self, chunks: u32, maps: u32) -> Result<u32, GpuError> {
         let groups = u64::from(chunks) * u64::from(maps);
-        u32::try_from(groups).map_err(|_| GpuError::Limit {
+        let fitting = u32::try_from(groups)
+            .ok()
+            .filter(|groups| *groups <= GROUPS_MAX);
+        fitting.ok_or_else(|| GpuError::Limit {
             adapter: self.gpu.name.clone(),
             what: "workgroups that draw triangles into maps",
             needed: groups,
-            limit: u32::MAX.into(),
+            limit: GROUPS_MAX.into(),
         })
     }
 

@@ -108,7 +108,7 @@ pub(super) fn scene(
     }
     let mut prepared = Vec::new();
     for (station, path) in pairs(stations, options) {
-        let label = format!("gpu@{}/{}", station.adapter.gpu.name, path.name());
+        let label = station.adapter.label(path);
         let grid = &grids[&station.adapter.bits(path)];
         match station.rasterizer(path, grid) {
             Ok(rasterizer) => prepared.push(Prepared {

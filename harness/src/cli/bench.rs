@@ -8,7 +8,13 @@ mod legs;
 mod rsm;
 mod stress;
 
-use super::Verdict;
+use std::path::PathBuf;
+
+use super::adapters::OnAdapters;
+use super::scenes::Scenes;
+use super::{Verdict, reports};
+use crate::corpus::{self, Entry};
+use crate::replay::gpu::Adapter;
 
 /// What is measured.
 #[derive(clap::Subcommand)]
@@ -37,4 +43,33 @@ pub fn run(bench: &Bench) -> anyhow::Result<Verdict> {
         Bench::Rsm(args) => rsm::run(args),
         Bench::Stress(args) => stress::run(args),
     }
+}
+
+/// What a measurement starts from.
+struct Start {
+    corpus: Vec<Entry>,
+    /// `None`: those of our own choice.
+    scenes: Option<Vec<Entry>>,
+    adapters: Vec<Adapter>,
+    /// Where files go, whose names begin with the stem and end with the machine's.
+    folder: PathBuf,
+}
+
+/// Looks for scenes and adapters, and whether files can be written, before anything is measured.
+fn start(
+    scenes: &Scenes,
+    on: &OnAdapters,
+    out: Option<&PathBuf>,
+    stem: &str,
+) -> anyhow::Result<Start> {
+    let corpus = corpus::list(&corpus::root())?;
+    let scenes = scenes.if_any(&corpus)?;
+    let folder = out.cloned().unwrap_or_else(reports::bench);
+    reports::can_write([&folder.join(stem)])?;
+    Ok(Start {
+        scenes,
+        adapters: on.usable()?.open,
+        folder,
+        corpus,
+    })
 }

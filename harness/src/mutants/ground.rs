@@ -93,7 +93,7 @@ impl Ground {
     /// Runs a mutant on one path of one adapter; before the first on this scene, the
     /// shipped kernels, or it could die of something else.
     pub(super) fn leg(&self, mutant: &Mutant, adapter: &mut Adapter, path: Path) -> Tried {
-        let leg = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let leg = adapter.label(path);
         if let Some(reason) = cannot_run(adapter, path) {
             return Ok((Cell::blank(mutant, leg, reason.into()), None));
         }

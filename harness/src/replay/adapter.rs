@@ -109,6 +109,17 @@ impl Adapter {
         })
     }
 
+    /// The kernels of a path.
+    pub fn kernels(&self, path: Path) -> &Kernels {
+        let native = self.native.as_ref().filter(|_| path == Path::Native);
+        native.unwrap_or(&self.kernels)
+    }
+
+    /// What a leg on a path is called in rows.
+    pub fn label(&self, path: Path) -> String {
+        format!("gpu@{}/{}", self.gpu.name, path.name())
+    }
+
     /// Runs a user's kernels from now on, in place of ours of the same stages.
     /// Calibration was done with ours.
     pub fn use_foreign(&mut self, foreign: &[Foreign]) {

@@ -63,7 +63,7 @@ pub struct GpuSeen {
 impl GpuLeg<'_> {
     /// `gpu@adapter/path`.
     pub fn label(&self) -> String {
-        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+        self.adapter.label(self.path)
     }
 
     /// Runs every stage and adds a row for each.

@@ -90,7 +90,7 @@ impl Run<'_> {
     }
 
     fn grid_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
-        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let label = adapter.label(path);
         let why = "works on triangles, cells and rays, not on fragments";
         if self.skips_path(adapter, path, why) {
             return Ok(());
@@ -145,7 +145,7 @@ impl Run<'_> {
             }
             _ => return false,
         };
-        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let label = adapter.label(path);
         let reason = reason.to_owned();
         self.rows.skip("leg", "spec", &label, Class::Exact, reason);
         true

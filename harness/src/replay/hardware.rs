@@ -27,7 +27,7 @@ pub fn run(
     budget: Option<f64>,
     rows: &mut Rows,
 ) -> Result<(), GpuError> {
-    let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+    let label = adapter.label(path);
     let nothing = scene.triangles.is_empty();
     for stage in stages_of(Chain::Frame).map(|stage| stage.name) {
         let reason = match (path, stage) {

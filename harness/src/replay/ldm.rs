@@ -55,7 +55,7 @@ impl Run<'_> {
     }
 
     fn ldm_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
-        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let label = adapter.label(path);
         let why = "works on maps, pixels and points, in compute kernels";
         if self.skips_path(adapter, path, why) {
             return Ok(());

@@ -32,7 +32,7 @@ impl Run<'_> {
 
     pub(super) fn leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
         if path == Path::Native && adapter.native.is_none() {
-            let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+            let label = adapter.label(path);
             let stands_in = self.options.paths.contains(&Path::Compute);
             let reason = match stands_in {
                 true => "no 64-bit integers: compute takes its place",
@@ -44,7 +44,7 @@ impl Run<'_> {
         }
         let fragment = path == Path::Fragment;
         if let Some(foreign) = adapter.foreign.iter().find(|f| !f.serves(fragment)) {
-            let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+            let label = adapter.label(path);
             let rasteriser = if fragment { "the hardware's" } else { "our" };
             let stage = foreign.stage.name;
             let reason = format!(
@@ -55,7 +55,7 @@ impl Run<'_> {
             return Ok(());
         }
         let spec = self.spec(adapter.bits(path))?;
-        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let label = adapter.label(path);
         if self.options.vertex == Vertices::Hardware {
             let (scene, budget) = (&self.loaded.scene, self.vertex_budget());
             if let Err(error) = hardware::run(adapter, path, scene, budget, &mut self.rows) {
@@ -150,7 +150,7 @@ impl Run<'_> {
         let own = match self.vertices(spec, adapter, path) {
             Err(lost @ GpuError::Lost { .. }) => return Err(lost),
             Err(error) => {
-                let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+                let label = adapter.label(path);
                 let failed = vertex::stage_of(&error, self.options.from);
                 for stage in vertex::STAGES {
                     if stage == failed {
@@ -171,7 +171,7 @@ impl Run<'_> {
         match SpecRun::new(&self.loaded.scene, own, &self.plan) {
             Ok(run) => Ok(Some(Observed::new("spec", run))),
             Err(message) => {
-                let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+                let label = adapter.label(path);
                 self.rows
                     .fail("end to end", "spec", &label, Some(Cause::Vertex), message);
                 Ok(None)

@@ -58,7 +58,7 @@ impl Run<'_> {
     }
 
     fn rsm_leg(&mut self, adapter: &Adapter, path: Path) -> Result<(), Stop> {
-        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let label = adapter.label(path);
         let why = "works on pixels and texels that know their triangle";
         if self.skips_path(adapter, path, why) {
             return Ok(());

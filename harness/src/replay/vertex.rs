@@ -85,7 +85,7 @@ impl VertexLeg<'_> {
     }
 
     fn label(&self) -> String {
-        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+        self.adapter.label(self.path)
     }
 
     /// The stages from `first` on; what comes before it is the spec's, rounded to `f32`

@@ -138,7 +138,7 @@ fn prepared<'s>(
     let path = Path::Fragment;
     for station in stations {
         let adapter = station.adapter;
-        let label = format!("gpu@{}/{}", adapter.gpu.name, path.name());
+        let label = adapter.label(path);
         if adapter.grid == Grid::Unknown {
             refuse(&label, "the driver's sub-pixel grid is unknown".to_owned());
             continue;

@@ -1,7 +1,7 @@
 //! Rows as tables: on the terminal, as a page that can be committed, as values.
 
 use super::super::csv::number;
-use super::super::table::{mebibytes, spread};
+use super::super::table::{aligned, mebibytes, spread};
 use super::super::{WARM_UP, markdown};
 use super::judge::SAMPLE;
 use super::{Frames, OfAdapter, Row};
@@ -91,16 +91,7 @@ fn cells(row: &Row) -> [String; COLUMNS.len()] {
 pub fn lines(frames: &Frames) -> Vec<String> {
     let mut table = vec![COLUMNS.map(str::to_owned)];
     table.extend(frames.rows.iter().map(cells));
-    let width = |i: usize| table.iter().map(|row| row[i].chars().count()).max();
-    let widths: Vec<usize> = (0..COLUMNS.len()).map(|i| width(i).unwrap_or(0)).collect();
-    let line = |row: &[String; COLUMNS.len()]| {
-        let padded = row.iter().zip(&widths);
-        let padded: Vec<String> = padded
-            .map(|(cell, width)| format!("{cell:width$}"))
-            .collect();
-        padded.join("  ")
-    };
-    table.iter().map(line).collect()
+    aligned(&table, 2).collect()
 }
 
 /// The page.

@@ -8,9 +8,9 @@ use super::super::adapters::OnAdapters;
 use super::super::run_info::today;
 use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
+use super::{Start, start};
 use crate::bench::Progress;
 use crate::bench::legs::{Legs, Options, csv, lines, page, run as measure};
-use crate::corpus;
 use crate::output::stdout;
 use crate::text::clean;
 
@@ -37,12 +37,12 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
-    let corpus = corpus::list(&corpus::root())?;
-    let scenes = args.scenes.if_any(&corpus)?;
-    let folder = args.out.clone().unwrap_or_else(reports::bench);
-    // The names of the files end with the machine's.
-    reports::can_write([&folder.join("legs")])?;
-    let adapters = args.on.usable()?.open;
+    let Start {
+        corpus,
+        scenes,
+        adapters,
+        folder,
+    } = start(&args.scenes, &args.on, args.out.as_ref(), "legs")?;
     let options = Options {
         scenes,
         runs: args.runs.get(),

@@ -82,17 +82,10 @@ impl<'a> GridLeg<'a> {
     }
 
     pub(super) fn stages(&self) -> Result<Stages<'_>, GpuError> {
-        let Adapter {
-            gpu,
-            kernels,
-            native,
-            ..
-        } = self.adapter;
-        let native = native.as_ref().filter(|_| self.path == Path::Native);
         let spec = &self.spec.value;
         let device = Device::new(
-            gpu,
-            native.unwrap_or(kernels),
+            &self.adapter.gpu,
+            self.adapter.kernels(self.path),
             &spec.blockers,
             &spec.grid.axes,
             spec.membership,
@@ -101,7 +94,7 @@ impl<'a> GridLeg<'a> {
     }
 
     pub(super) fn label(&self) -> String {
-        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+        self.adapter.label(self.path)
     }
 
     fn seen<T>(&self, value: T, stages: &Stages<'_>) -> Observed<Gpu, T> {

@@ -5,7 +5,6 @@ mod own;
 use std::time::Duration;
 
 use triptych_gpu::error::GpuError;
-use triptych_gpu::kernel::Kernels;
 use triptych_gpu::ldm::{self as device, Open, Stages};
 use triptych_gpu::raster::Path;
 use triptych_spec::ldm::{Chains, Hits, Layers, Link, Receiver};
@@ -79,21 +78,21 @@ impl LdmLeg<'_> {
         Ok(())
     }
 
-    fn kernels(&self) -> &Kernels {
-        let native = self.adapter.native.as_ref();
-        let native = native.filter(|_| self.path == Path::Native);
-        native.unwrap_or(&self.adapter.kernels)
-    }
-
     fn stages<'s>(&'s self, turn: &'s LdmTurn, budget: u64) -> Result<Stages<'s>, GpuError> {
         let blockers = &self.spec.value.setup.blockers;
         let gpu = &self.adapter.gpu;
-        Stages::new(gpu, self.kernels(), &turn.maps, blockers, budget)
+        Stages::new(
+            gpu,
+            self.adapter.kernels(self.path),
+            &turn.maps,
+            blockers,
+            budget,
+        )
     }
 
     /// The leg's name in rows.
     pub fn label(&self) -> String {
-        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+        self.adapter.label(self.path)
     }
 
     fn runs(&self, stage: &str) -> bool {

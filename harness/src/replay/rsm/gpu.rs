@@ -67,20 +67,13 @@ impl RsmLeg<'_> {
     }
 
     fn stages<'s>(&'s self, frame: &RsmFrame) -> Result<Stages<'s>, GpuError> {
-        let Adapter {
-            gpu,
-            kernels,
-            native,
-            ..
-        } = self.adapter;
-        let native = native.as_ref().filter(|_| self.path == Path::Native);
         let setting = self.spec.value.setting(frame);
-        Stages::new(gpu, native.unwrap_or(kernels), &setting)
+        Stages::new(&self.adapter.gpu, self.adapter.kernels(self.path), &setting)
     }
 
     /// The leg's name in rows.
     pub fn label(&self) -> String {
-        format!("gpu@{}/{}", self.adapter.gpu.name, self.path.name())
+        self.adapter.label(self.path)
     }
 
     fn runs(&self, stage: &str) -> bool {

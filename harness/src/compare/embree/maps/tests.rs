@@ -184,7 +184,7 @@ fn intervals_are_narrow() {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "keys"
+        reason = "a sixteenth of a pixel, in keys: a few thousand at most"
     )]
     let by = (turn.maps.pixel * 8.0 / 16.0) as u32;
     other.keys.iter_mut().for_each(|key| *key += by);

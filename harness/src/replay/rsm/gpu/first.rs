@@ -2,7 +2,7 @@
 
 use triptych_gpu::abuffer::{self, Options};
 use triptych_gpu::error::GpuError;
-use triptych_gpu::raster::{Path, Rasterizer};
+use triptych_gpu::raster::Rasterizer;
 use triptych_gpu::rsm::Stages;
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::rsm::{Gbuffer, Light, Surface, View};
@@ -114,11 +114,9 @@ impl RsmLeg<'_> {
         tally: &mut Judged,
     ) -> Result<Option<Visible>, GpuError> {
         let adapter = self.adapter;
-        let native = adapter.native.as_ref();
-        let native = native.filter(|_| self.path == Path::Native);
         let drawn = primitives(&view.scene(&of.parts.model), SUBPIXEL_BITS);
         let colours = vec![[0.0; 4]; drawn.prims.len()];
-        let kernels = native.unwrap_or(&adapter.kernels);
+        let kernels = adapter.kernels(self.path);
         let rasterizer = Rasterizer::new(&adapter.gpu, kernels, self.path, &drawn, &colours)?;
         let options = Options {
             given: None,
