@@ -4,6 +4,7 @@
 //! of it. Twin: `spec/src/rsm.rs`.
 
 mod device;
+mod faces;
 mod records;
 mod setup;
 mod stages;
@@ -13,6 +14,7 @@ use bytemuck::{Pod, Zeroable};
 use triptych_spec::rsm::{Place as SpecPlace, Setting, View as SpecView, Viewpoint};
 use triptych_spec::vertex::viewport;
 
+pub use faces::gbuffer;
 pub use records::{Face, Light, Place, Surface};
 pub use stages::{Blocked, Colours, Stages, Surfaces};
 pub use timed::{Span, Timed, Work};

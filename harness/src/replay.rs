@@ -25,6 +25,7 @@ pub mod skips;
 pub mod spec;
 mod stop;
 pub mod vertex;
+mod visible;
 pub mod work;
 pub mod worst;
 

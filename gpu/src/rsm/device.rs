@@ -5,12 +5,12 @@ use std::time::Duration;
 use triptych_spec::rsm::{self as spec, Model, Setting};
 use triptych_spec::scene::Size;
 
-use super::records::{Light, Place, Surface, faces};
+use super::faces::{Buffers, Faces};
+use super::records::{Light, Place, Surface};
 use super::{Parameters, View};
 use crate::context::Gpu;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
-use crate::frame::WORKGROUP;
 use crate::grid;
 use crate::kernel::Kernels;
 
@@ -20,7 +20,7 @@ const STEPS: u32 = grid::STEPS;
 /// What all stages share.
 pub(super) struct Device<'g> {
     pub(super) gpu: &'g Gpu,
-    kernels: &'g Kernels,
+    pub(super) faces: Faces<'g>,
     model: Model,
     pub(super) given: spec::Parameters,
     /// What kernels are told, but for what a dispatch adds.
@@ -28,11 +28,7 @@ pub(super) struct Device<'g> {
     pub(super) eye: wgpu::Buffer,
     pub(super) lamp: wgpu::Buffer,
     pub(super) weights: wgpu::Buffer,
-    corners: wgpu::Buffer,
-    faces: wgpu::Buffer,
 }
-
-type Buffers<'b> = [(&'b str, &'b wgpu::Buffer)];
 
 impl<'g> Device<'g> {
     /// Uploads model and views.
@@ -42,9 +38,6 @@ impl<'g> Device<'g> {
         setting: &Setting<'_>,
     ) -> Result<Self, GpuError> {
         let model = setting.model;
-        let triangles = 0..u32::try_from(model.triangles.len()).unwrap_or(u32::MAX);
-        let corners = triangles.flat_map(|triangle| model.corners(triangle));
-        let corners = corners.map(|[x, y, z]| [x as f32, y as f32, z as f32, 0.0]);
         let map = setting.lamp.view.size;
         let weights =
             (0..map.pixels()).map(|texel| setting.lamp.weight(texel, setting.parameters.stride));
@@ -54,13 +47,11 @@ impl<'g> Device<'g> {
             eye: gpu.uniform("the eye", &View::from(setting.eye))?,
             lamp: gpu.uniform("the lamp", &View::from(&setting.lamp.view))?,
             weights: gpu.upload("weights of texels", &weights)?,
-            corners: gpu.upload("corners of triangles", &corners.collect::<Vec<_>>())?,
-            faces: gpu.upload("faces of triangles", &faces(model))?,
+            faces: Faces::new(gpu, kernels, model)?,
             told: Parameters::from(setting),
             given: setting.parameters,
             model: model.clone(),
             gpu,
-            kernels,
         })
     }
 
@@ -93,16 +84,7 @@ impl<'g> Device<'g> {
         view: &wgpu::Buffer,
         buffers: &Buffers<'_>,
     ) -> Result<Ready, GpuError> {
-        let uniform = self.gpu.uniform("parameters", &told)?;
-        let mut all = vec![
-            ("parameters", &uniform),
-            ("view", view),
-            ("corners", &self.corners),
-            ("faces", &self.faces),
-        ];
-        all.extend_from_slice(buffers);
-        let groups = told.items.div_ceil(WORKGROUP);
-        Ready::new(self.gpu, self.kernels, ("rsm", entry), groups, &all)
+        self.faces.ready(entry, told, view, buffers)
     }
 
     /// One invocation for each item; waits for the end.
@@ -213,12 +195,6 @@ impl<'g> Device<'g> {
     pub(super) fn room<T>(&self, what: &'static str, size: Size) -> Result<wgpu::Buffer, GpuError> {
         let bytes = size_of::<T>() as u64 * size.pixels() as u64;
         self.gpu.storage(what, bytes)
-    }
-
-    /// Every triangle of the model as its own source: what is seen is given by its row.
-    pub(super) fn sources(&self) -> Result<wgpu::Buffer, GpuError> {
-        let rows: Vec<u32> = (0..).take(self.model.triangles.len()).collect();
-        self.gpu.upload("sources", &rows)
     }
 }
 

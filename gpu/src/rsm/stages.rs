@@ -8,7 +8,7 @@ use triptych_spec::rsm::{self as spec, Setting};
 
 use super::Parameters;
 use super::device::Device;
-use super::records::{Light, Place, Surface};
+use super::records::{Light, Place};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::grid;
@@ -82,16 +82,10 @@ impl<'g> Stages<'g> {
     /// [`triptych_spec::abuffer::NOTHING`].
     pub fn gbuffer(&mut self, triangles: &[u32]) -> Result<Surfaces, GpuError> {
         let device = &self.device;
-        let size = device.eye_size();
-        let seen = device.room::<Surface>("surfaces", size)?;
-        let buffers = [
-            ("nearest", &device.gpu.upload("triangles", triangles)?),
-            ("sources", &device.sources()?),
-            ("seen", &seen),
-        ];
-        self.time = device.each("gbuffer", size, &device.eye, &buffers)?;
-        let seen: Vec<Surface> = device.gpu.read(&seen, size.pixels())?;
-        Ok(seen.into_iter().map(Surface::unpacked).collect())
+        let told = device.of(device.eye_size());
+        let seen;
+        (seen, self.time) = device.faces.seen(told, &device.eye, triangles)?;
+        Ok(seen)
     }
 
     /// Stage `rsm`: what each texel of the light's map sees of a triangle, and its intensity.
@@ -102,7 +96,7 @@ impl<'g> Stages<'g> {
         let intensities = device.room::<[f32; 4]>("intensities", size)?;
         let buffers = [
             ("nearest", &device.gpu.upload("triangles", triangles)?),
-            ("sources", &device.sources()?),
+            ("sources", &device.faces.sources()?),
             ("weights", &device.weights),
             ("lights", &lights),
             ("intensities", &intensities),

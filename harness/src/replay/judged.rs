@@ -42,6 +42,24 @@ impl Judged {
         self.kind(stage, judgement);
     }
 
+    /// Whether a result is what it may be; if not, the row tells how. One that is sound has its
+    /// row where its stage is judged from the spec's input.
+    pub(super) fn may_follow(&mut self, stage: &'static str, judgement: Judgement) -> bool {
+        let sound = judgement.differ() == 0;
+        if !sound {
+            // Its errors have another unit than the row's.
+            self.part(
+                stage,
+                Judgement {
+                    error: None,
+                    error_over_bound: None,
+                    ..judgement
+                },
+            );
+        }
+        sound
+    }
+
     fn kind(&mut self, stage: &'static str, judgement: Judgement) -> &mut Kind {
         let (class, unit) = (judgement.class, judgement.unit);
         let same = |kind: &Kind| (kind.stage, kind.class, kind.unit) == (stage, class, unit);

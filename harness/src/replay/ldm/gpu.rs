@@ -1,4 +1,4 @@
-//! A GPU leg of a scene of maps: every stage from the spec's input, then from the device's own.
+//! A GPU leg of a scene of maps: every stage from the spec's input, then all of the device's own.
 
 mod own;
 
@@ -7,8 +7,10 @@ use std::time::Duration;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::ldm::{self as device, Open, Stages};
 use triptych_gpu::raster::Path;
-use triptych_spec::ldm::{Chains, Hits, Layers, Link, Receiver};
+use triptych_spec::ldm::{self, Chains, Hits, Layers, Link, Receiver};
+use triptych_spec::rsm::Colour;
 
+use super::setup::Asker;
 use super::spec::{LdmRun, LdmTurn};
 use crate::compare::Judgement;
 use crate::compare::ldm as judge;
@@ -34,7 +36,7 @@ pub struct LdmLeg<'a> {
     pub plan: &'a LdmPlan,
 }
 
-/// What a device made of a rotation, from its own lists.
+/// What a device made of a rotation, from its own points and lists.
 #[derive(Clone, Debug, Default)]
 pub struct Made {
     /// Its lists.
@@ -47,7 +49,8 @@ pub struct Made {
 
 impl LdmLeg<'_> {
     /// Adds a row for each stage from the spec's input, and rows for all of them from the
-    /// device's own lists; gives what it made in the latter.
+    /// device's own points and lists; gives what it made in the latter, nothing where its points
+    /// are not what they may be.
     ///
     /// # Errors
     /// Whatever the device reports.
@@ -162,7 +165,7 @@ impl LdmLeg<'_> {
         let mut time = Duration::ZERO;
         let mut parts = Vec::new();
         for askers in self.spec.value.setup.receivers.chunks(at_once) {
-            let receivers: Vec<Receiver> = askers.iter().map(|a| a.receiver).collect();
+            let receivers = receivers(askers);
             let pixels: Vec<u32> = askers.iter().map(|a| a.pixel).collect();
             let seen = by_receiver(&stages.neighbours(&receivers)?, maps);
             time += stages.time;
@@ -186,9 +189,10 @@ impl LdmLeg<'_> {
         judged: &mut Judged,
     ) -> Result<(), GpuError> {
         let times = self.spec.value.times;
+        let askers = &self.spec.value.setup.receivers;
         if self.runs("occlusion") {
-            let seen = self.open(stages)?;
-            let judgement = self.judge_open(turn, &seen);
+            let seen = self.open(askers, stages)?;
+            let judgement = self.judge_open(&turn.open, &seen);
             judged.add(
                 "occlusion",
                 judgement,
@@ -197,47 +201,48 @@ impl LdmLeg<'_> {
             );
         }
         if self.runs("environment") {
-            let seen = self.light(turn, stages)?;
-            let judgement = self.judge_light(turn, &seen);
+            let seen = self.light(turn, askers, stages)?;
+            let judgement = self.judge_light(&turn.light, &seen);
             let of_spec = self.share(times.environment);
             judged.add("environment", judgement, of_spec, stages.time);
         }
         Ok(())
     }
 
-    fn receivers(&self) -> Vec<Receiver> {
-        let askers = self.spec.value.setup.receivers.iter();
-        askers.map(|asker| asker.receiver).collect()
+    fn open(&self, askers: &[Asker], stages: &mut Stages<'_>) -> Result<Vec<Open>, GpuError> {
+        stages.occlusion(&receivers(askers), self.spec.value.setup.falloff)
     }
 
+    fn light(
+        &self,
+        turn: &LdmTurn,
+        askers: &[Asker],
+        stages: &mut Stages<'_>,
+    ) -> Result<Vec<[f32; 3]>, GpuError> {
+        let directions = self.spec.value.setup.directions;
+        stages.environment(&receivers(askers), (&turn.sky, &turn.lit), directions)
+    }
+
+    fn judge_open(&self, must: &[ldm::Open], seen: &[Open]) -> Judgement {
+        let seen: Vec<(u32, f32)> = seen.iter().map(|open| (open.whole, open.part)).collect();
+        let pixels = self.pixels();
+        self.beside(must, seen, |must, seen| judge::open(&pixels, must, seen))
+    }
+
+    fn judge_light(&self, must: &[Colour], seen: &[[f32; 3]]) -> Judgement {
+        let pixels = self.pixels();
+        self.beside(must, seen, |must, seen| judge::light(&pixels, must, seen))
+    }
+
+    /// Of those who ask, in order: the same for all legs.
     fn pixels(&self) -> Vec<u32> {
         let askers = self.spec.value.setup.receivers.iter();
         askers.map(|asker| asker.pixel).collect()
     }
+}
 
-    fn open(&self, stages: &mut Stages<'_>) -> Result<Vec<Open>, GpuError> {
-        stages.occlusion(&self.receivers(), self.spec.value.setup.falloff)
-    }
-
-    fn light(&self, turn: &LdmTurn, stages: &mut Stages<'_>) -> Result<Vec<[f32; 3]>, GpuError> {
-        let directions = self.spec.value.setup.directions;
-        stages.environment(&self.receivers(), (&turn.sky, &turn.lit), directions)
-    }
-
-    fn judge_open(&self, turn: &LdmTurn, seen: &[Open]) -> Judgement {
-        let seen: Vec<(u32, f32)> = seen.iter().map(|open| (open.whole, open.part)).collect();
-        let pixels = self.pixels();
-        self.beside(&turn.open, seen, |must, seen| {
-            judge::open(&pixels, must, seen)
-        })
-    }
-
-    fn judge_light(&self, turn: &LdmTurn, seen: &[[f32; 3]]) -> Judgement {
-        let pixels = self.pixels();
-        self.beside(&turn.light, seen, |must, seen| {
-            judge::light(&pixels, must, seen)
-        })
-    }
+fn receivers(askers: &[Asker]) -> Vec<Receiver> {
+    askers.iter().map(|asker| asker.receiver).collect()
 }
 
 /// A device's chains as those of the spec are written.

@@ -7,7 +7,9 @@ use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::{Lattice, Point};
 use triptych_spec::ldm::{self, Falloff, Maps, Receiver, directions, rotated, weight};
 use triptych_spec::raster::count;
-use triptych_spec::rsm::{Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, View, gbuffer};
+use triptych_spec::rsm::{
+    Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, Surface, View, gbuffer,
+};
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use crate::replay::placed;
@@ -31,6 +33,8 @@ pub struct Setup {
     pub seen: Gbuffer,
     /// Who asks: the points that pixels see.
     pub receivers: Vec<Asker>,
+    /// How far points are moved off their faces, in steps along one axis.
+    pub offset: u32,
     /// Directions of a set.
     pub directions: u32,
     /// How many sets there are.
@@ -87,7 +91,7 @@ impl Setup {
         }
         let offset = section.offset.0.max(OFFSET_MIN);
         let seen = gbuffer(&model, &eye, &off_faces(offset));
-        let receivers = receivers(&model, &seen, offset);
+        let receivers = receivers(&model, &seen.surfaces, |_| off(offset));
         let falloff = match section.far {
             None => Falloff::None,
             Some(far) => far_in_steps(&lattice, far.0, section.power())?,
@@ -99,6 +103,7 @@ impl Setup {
             blockers,
             seen,
             receivers,
+            offset,
             directions: section.directions.0,
             rotations: section.rotations.0,
             resolution: section.resolution.0,
@@ -146,12 +151,28 @@ impl Setup {
         })
     }
 
-    /// Maps of what blocks. With `skip`, as far as somebody asks.
+    /// Who asks where a device sees these surfaces, which may stray from the spec's: a point that
+    /// is another one is as much farther off its surface.
+    pub(super) fn receivers_of(&self, surfaces: &[Option<Surface>]) -> Vec<Asker> {
+        receivers(&self.model, surfaces, |pixel| {
+            let strays = self.seen.stray[pixel].into_iter().max().unwrap_or(0);
+            match surfaces[pixel] == self.seen.surfaces[pixel] {
+                true => off(self.offset),
+                false => off(self.offset) + strays,
+            }
+        })
+    }
+
+    /// Maps of what blocks. With `skip`, as far as somebody asks, or may by the points of a device
+    /// ([`Gbuffer::stray`]).
     fn maps(&self, directions: &[[f64; 3]], skip: bool) -> Result<Maps, String> {
         let corners = self.blockers.triangles.iter().flatten();
         let corners = corners.map(|row| self.blockers.vertices[*row as usize]);
         let blockers = bounds(corners).unwrap_or([[0; 3]; 2]);
-        let asking = self.receivers.iter().map(|asker| asker.receiver.point);
+        let asking = self.receivers.iter().flat_map(|asker| {
+            let (point, strays) = (asker.receiver.point, &self.seen.stray[asker.pixel as usize]);
+            [-1, 1].map(|way| [0, 1, 2].map(|i| point[i] + way * strays[i].cast_signed()))
+        });
         let asking = bounds(asking).filter(|_| skip).unwrap_or(blockers);
         Maps::new(directions, blockers, asking, self.resolution).map_err(|e| e.to_string())
     }
@@ -163,6 +184,14 @@ pub(super) fn bounds(points: impl Iterator<Item = Point>) -> Option<[Point; 2]> 
         let least = [0, 1, 2].map(|i| low[i].min(p[i]));
         [least, [0, 1, 2].map(|i| high[i].max(p[i]))]
     })
+}
+
+/// How far a point is off its surface, in steps along any axis: less than this.
+///
+/// It is met in its triangle's plane, but for rounding in `f64`, which is far below a step; rounded
+/// to the lattice, by half a step along each axis at most; and moved by `offset` steps along one.
+fn off(offset: u32) -> u32 {
+    offset + 1
 }
 
 /// What stage `gbuffer` is told: how far points are moved off their faces, and nothing else.
@@ -179,14 +208,9 @@ pub(super) fn off_faces(offset: u32) -> Parameters {
     }
 }
 
-/// The points that pixels see.
-///
-/// A point is met in its triangle's plane, but for rounding in `f64`, which is far below a step;
-/// rounded to the lattice, by half a step along each axis at most; and moved by `offset` steps
-/// along one. So it is off its surface by less than `offset + 1` along any axis.
-fn receivers(model: &Model, seen: &Gbuffer, offset: u32) -> Vec<Asker> {
-    let surfaces = (0_u32..).zip(&seen.surfaces);
-    let asker = |(pixel, surface): (u32, &Option<triptych_spec::rsm::Surface>)| {
+/// The points that pixels see, each off its surface by so many steps along an axis at most.
+fn receivers(model: &Model, seen: &[Option<Surface>], off: impl Fn(usize) -> u32) -> Vec<Asker> {
+    let asker = |(pixel, surface): (u32, &Option<Surface>)| {
         let surface = surface.as_ref()?;
         let normal = model.face(surface.triangle).coarse;
         Some(Asker {
@@ -195,11 +219,11 @@ fn receivers(model: &Model, seen: &Gbuffer, offset: u32) -> Vec<Asker> {
             receiver: Receiver {
                 point: surface.point,
                 normal: normal.map(|c| c * surface.side),
-                off: offset + 1,
+                off: off(pixel as usize),
             },
         })
     };
-    surfaces.filter_map(asker).collect()
+    (0..).zip(seen).filter_map(asker).collect()
 }
 
 /// The falloff, in steps.

@@ -149,6 +149,16 @@ impl LdmTurn {
         let maps = self.maps.maps.iter();
         maps.map(|map| (map, neighbours(&self.maps, map, &self.layers, receiver)))
     }
+
+    /// What was found in the maps that light comes through, with the light.
+    pub fn lit_hits<'t>(
+        &'t self,
+        found: &'t [(&'t Map, Hits)],
+    ) -> impl Iterator<Item = (&'t Map, Hits, &'t ldm::Sky)> {
+        let of = found.iter().zip(self.sky.iter().zip(&self.lit));
+        let of = of.filter(|(_, (_, lit))| **lit);
+        of.map(|((map, hits), (sky, _))| (*map, *hits, sky))
+    }
 }
 
 /// A rotation's maps, and what every receiver makes of them, one after another: what they find is
@@ -183,10 +193,8 @@ fn render(
         let (open, at) = timed(|| occlusion(hits(), receiver.normal, setup.falloff));
         times.occlusion += at;
         let light = with_light.then(|| {
-            let of = hits().zip(turn.sky.iter().zip(&turn.lit));
-            let of = of.filter(|(_, (_, lit))| **lit);
-            let of = of.map(|((map, hits), (sky, _))| (map, hits, sky));
-            timed(|| environment(of, receiver.normal, setup.directions))
+            let lit = turn.lit_hits(&found);
+            timed(|| environment(lit, receiver.normal, setup.directions))
         });
         turn.open.push(open);
         if let Some((light, at)) = light {

@@ -1,26 +1,16 @@
 //! What a device starts a frame from: what eye and lamp see, and the blockers' cells.
 
-use triptych_gpu::abuffer::{self, Options};
 use triptych_gpu::error::GpuError;
-use triptych_gpu::raster::Rasterizer;
 use triptych_gpu::rsm::Stages;
-use triptych_spec::abuffer::NOTHING;
 use triptych_spec::rsm::{Gbuffer, Light, Surface, View};
-use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::own::STAGE;
 use super::{RsmFrame, RsmLeg};
-use crate::compare::Judgement;
 use crate::compare::grid::{self as lists, Runs};
 use crate::compare::rsm as judge;
 use crate::dump::FrameArrays;
 use crate::replay::judged::Judged;
-
-/// What a view shows, by the device.
-struct Visible {
-    keys: Vec<u32>,
-    triangles: Vec<u32>,
-}
+use crate::replay::visible::{Visible, visible};
 
 impl RsmLeg<'_> {
     /// The blockers' cells; `false` if no search may follow them.
@@ -67,7 +57,7 @@ impl RsmLeg<'_> {
         };
         own.seen = stages.gbuffer(&eye.triangles)?;
         let judged = self.beside(&frame.seen, &own.seen, |a, b| judge::surfaces(a, b));
-        if !may_follow(judged, tally) {
+        if !tally.may_follow(STAGE, judged) {
             return Ok(None);
         }
         if !self.runs("rsm") {
@@ -101,7 +91,7 @@ impl RsmLeg<'_> {
             judge::places(view, &own.seen, a, b)
         });
         // Each has its say.
-        let sound = [near, bright, placed].map(|judged| may_follow(judged, tally));
+        let sound = [near, bright, placed].map(|judged| tally.may_follow(STAGE, judged));
         Ok((sound == [true; 3]).then_some(lamp.keys))
     }
 
@@ -113,27 +103,7 @@ impl RsmLeg<'_> {
         (view, spec, unit): (&View, &Gbuffer, &'static str),
         tally: &mut Judged,
     ) -> Result<Option<Visible>, GpuError> {
-        let adapter = self.adapter;
-        let drawn = primitives(&view.scene(&of.parts.model), SUBPIXEL_BITS);
-        let colours = vec![[0.0; 4]; drawn.prims.len()];
-        let kernels = adapter.kernels(self.path);
-        let rasterizer = Rasterizer::new(&adapter.gpu, kernels, self.path, &drawn, &colours)?;
-        let options = Options {
-            given: None,
-            capacity: None,
-            opaque: true,
-            lists: false,
-            depth_test: false,
-            background: [0.0; 3],
-        };
-        // There are no lists to be followed.
-        let opaque = abuffer::run(&rasterizer, options, |_| true, |_, _| None)?.opaque;
-        let triangle = |prim: &u32| drawn.source.get(*prim as usize).copied();
-        let triangles = opaque.prim.iter().map(|p| triangle(p).unwrap_or(NOTHING));
-        let seen = Visible {
-            triangles: triangles.collect(),
-            keys: opaque.key,
-        };
+        let seen = visible((self.adapter, self.path), view, &of.parts.model)?;
         let judged = self.beside(spec, &seen, |spec, seen| {
             judge::visible(unit, spec, &seen.keys, &seen.triangles)
         });
@@ -141,22 +111,4 @@ impl RsmLeg<'_> {
         tally.part(STAGE, judged);
         Ok(sound.then_some(seen))
     }
-}
-
-/// Whether a result is what it may be; if not, the row tells how. A result that is sound has its
-/// row where its stage is judged from the spec's input.
-fn may_follow(judged: Judgement, tally: &mut Judged) -> bool {
-    let sound = judged.differ() == 0;
-    if !sound {
-        // Its errors have another unit than the picture's.
-        tally.part(
-            STAGE,
-            Judgement {
-                error: None,
-                error_over_bound: None,
-                ..judged
-            },
-        );
-    }
-    sound
 }
