@@ -34,6 +34,44 @@ fn layers_larges(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     }
 }
 
+// Counts a triangle in every pixel that it covers, from the first of its box on and `stride` apart.
+fn count_pixels(map: Map, cover: Cover, first: u32, stride: u32) {
+    for (var at = first; at < cover.pixels; at += stride) {
+        let sample = sample_of(map, cover, at);
+        if sample.is_covered {
+            atomicAdd(&counts[sample.pixel], 1u);
+        }
+    }
+}
+
+// Lists a triangle's keys likewise, from the end of each run down; after the last, the end has become
+// the start.
+fn fill_pixels(map: Map, cover: Cover, first: u32, stride: u32) {
+    for (var at = first; at < cover.pixels; at += stride) {
+        let sample = sample_of(map, cover, at);
+        if sample.is_covered {
+            let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
+            if address < told.capacity {
+                listed[address] = key_at(cover, sample);
+            }
+        }
+    }
+}
+
+// Links a triangle's keys likewise, in whatever order invocations come.
+fn chain_pixels(map: Map, cover: Cover, first: u32, stride: u32) {
+    for (var at = first; at < cover.pixels; at += stride) {
+        let sample = sample_of(map, cover, at);
+        if sample.is_covered {
+            let address = claim();
+            if address < told.capacity {
+                let next = atomicExchange(&heads[sample.pixel], address);
+                nodes[address] = Link(key_at(cover, sample), next);
+            }
+        }
+    }
+}
+
 // 64 small triangles and some maps.
 @compute @workgroup_size(64)
 fn layers_count(
@@ -45,13 +83,7 @@ fn layers_count(
     find_pairs(job, lane);
     for (var i = lane; i < atomicLoad(&all_pairs); i += WORKGROUP) {
         let map = map_of(job, pairs[i]);
-        let cover = small_cover(map, job, pairs[i], false);
-        for (var at = 0u; at < cover.pixels; at += 1u) {
-            let sample = sample_of(map, cover, at);
-            if sample.is_covered {
-                atomicAdd(&counts[sample.pixel], 1u);
-            }
-        }
+        count_pixels(map, small_cover(map, job, pairs[i], false), 0u, 1u);
     }
 }
 
@@ -66,13 +98,7 @@ fn layers_count_large(
     let count = hold(job, lane, false);
     let map = maps[told.first_map + job.map];
     for (var i = 0u; i < count; i += 1u) {
-        let cover = held[i];
-        for (var at = lane; at < cover.pixels; at += WORKGROUP) {
-            let sample = sample_of(map, cover, at);
-            if sample.is_covered {
-                atomicAdd(&counts[sample.pixel], 1u);
-            }
-        }
+        count_pixels(map, held[i], lane, WORKGROUP);
     }
 }
 
@@ -110,7 +136,7 @@ fn layers_ends(
     }
 }
 
-// The same, from the end of each run down; after the last, the end has become the start.
+// 64 small triangles and some maps.
 @compute @workgroup_size(64)
 fn layers_fill(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -121,20 +147,11 @@ fn layers_fill(
     find_pairs(job, lane);
     for (var i = lane; i < atomicLoad(&all_pairs); i += WORKGROUP) {
         let map = map_of(job, pairs[i]);
-        let cover = small_cover(map, job, pairs[i], true);
-        for (var at = 0u; at < cover.pixels; at += 1u) {
-            let sample = sample_of(map, cover, at);
-            if sample.is_covered {
-                let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
-                if address < told.capacity {
-                    listed[address] = key_at(cover, sample);
-                }
-            }
-        }
+        fill_pixels(map, small_cover(map, job, pairs[i], true), 0u, 1u);
     }
 }
 
-// The same.
+// Large triangles and a map.
 @compute @workgroup_size(64)
 fn layers_fill_large(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -145,16 +162,7 @@ fn layers_fill_large(
     let count = hold(job, lane, true);
     let map = maps[told.first_map + job.map];
     for (var i = 0u; i < count; i += 1u) {
-        let cover = held[i];
-        for (var at = lane; at < cover.pixels; at += WORKGROUP) {
-            let sample = sample_of(map, cover, at);
-            if sample.is_covered {
-                let address = atomicSub(&counts[sample.pixel], 1u) - 1u;
-                if address < told.capacity {
-                    listed[address] = key_at(cover, sample);
-                }
-            }
-        }
+        fill_pixels(map, held[i], lane, WORKGROUP);
     }
 }
 
@@ -186,7 +194,7 @@ fn layers_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workg
     }
 }
 
-// The paper's lists, in whatever order invocations come; 64 small triangles and some maps.
+// The paper's lists; 64 small triangles and some maps.
 @compute @workgroup_size(64)
 fn chain(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -197,17 +205,7 @@ fn chain(
     find_pairs(job, lane);
     for (var i = lane; i < atomicLoad(&all_pairs); i += WORKGROUP) {
         let map = map_of(job, pairs[i]);
-        let cover = small_cover(map, job, pairs[i], true);
-        for (var at = 0u; at < cover.pixels; at += 1u) {
-            let sample = sample_of(map, cover, at);
-            if sample.is_covered {
-                let address = claim();
-                if address < told.capacity {
-                    let next = atomicExchange(&heads[sample.pixel], address);
-                    nodes[address] = Link(key_at(cover, sample), next);
-                }
-            }
-        }
+        chain_pixels(map, small_cover(map, job, pairs[i], true), 0u, 1u);
     }
 }
 
@@ -222,17 +220,7 @@ fn chain_large(
     let count = hold(job, lane, true);
     let map = maps[told.first_map + job.map];
     for (var i = 0u; i < count; i += 1u) {
-        let cover = held[i];
-        for (var at = lane; at < cover.pixels; at += WORKGROUP) {
-            let sample = sample_of(map, cover, at);
-            if sample.is_covered {
-                let address = claim();
-                if address < told.capacity {
-                    let next = atomicExchange(&heads[sample.pixel], address);
-                    nodes[address] = Link(key_at(cover, sample), next);
-                }
-            }
-        }
+        chain_pixels(map, held[i], lane, WORKGROUP);
     }
 }
 
