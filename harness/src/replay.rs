@@ -13,6 +13,7 @@ mod hardware;
 mod judged;
 mod lanes;
 pub mod ldm;
+mod leg;
 mod legs;
 mod own_vertices;
 pub mod pictures;

@@ -9,7 +9,6 @@ use super::faces::{Buffers, Faces};
 use super::records::{Light, Place, Surface};
 use super::{Parameters, View};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::grid;
 use crate::kernel::Kernels;
@@ -76,17 +75,6 @@ impl<'g> Device<'g> {
         }
     }
 
-    /// One invocation for each item, to be recorded.
-    pub(super) fn ready(
-        &self,
-        entry: &str,
-        told: Parameters,
-        view: &wgpu::Buffer,
-        buffers: &Buffers<'_>,
-    ) -> Result<Ready, GpuError> {
-        self.faces.ready(entry, told, view, buffers)
-    }
-
     /// One invocation for each item; waits for the end.
     pub(super) fn run(
         &self,
@@ -95,7 +83,7 @@ impl<'g> Device<'g> {
         view: &wgpu::Buffer,
         buffers: &Buffers<'_>,
     ) -> Result<Duration, GpuError> {
-        self.ready(entry, told, view, buffers)?.run(self.gpu)
+        self.faces.ready(entry, told, view, buffers)?.run(self.gpu)
     }
 
     /// One invocation for each pixel of a picture.

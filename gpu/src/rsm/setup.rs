@@ -31,7 +31,9 @@ impl Timed<'_> {
         more: &[(&str, &wgpu::Buffer)],
     ) -> Result<Step, GpuError> {
         let named = [more, &self.named()].concat();
-        Ok(Step::Pass(self.device.ready(entry, told, view, &named)?))
+        Ok(Step::Pass(
+            self.device.faces.ready(entry, told, view, &named)?,
+        ))
     }
 
     /// What the eye sees, or the lamp.

@@ -174,7 +174,7 @@ impl Ground {
                 adapter,
                 path,
                 spec,
-                plan,
+                passes: &plan.passes,
             };
             return leg.each(&mut rows).map(|()| rows.rows);
         }
@@ -183,7 +183,7 @@ impl Ground {
                 adapter,
                 path,
                 spec,
-                plan,
+                passes: &plan.passes,
             };
             leg.each(&mut rows)?;
             // Points that a device sees by itself have no stage of this family. What a stage

@@ -66,7 +66,7 @@ impl Run<'_> {
             adapter,
             path,
             spec: &spec,
-            plan: &plan,
+            passes: &plan.passes,
         };
         match leg.run(&mut self.rows) {
             Ok(made) => self

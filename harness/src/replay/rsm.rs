@@ -69,7 +69,7 @@ impl Run<'_> {
             adapter,
             path,
             spec: &spec,
-            plan: &plan,
+            passes: &plan.passes,
         };
         let first = self.rows.spots.len();
         match leg.run(&mut self.rows) {

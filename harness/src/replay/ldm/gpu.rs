@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::ldm::{self as device, Open, Stages};
-use triptych_gpu::raster::Path;
 use triptych_spec::ldm::{self, Chains, Hits, Layers, Link, Receiver};
 use triptych_spec::rsm::Colour;
 
@@ -14,27 +13,15 @@ use super::setup::Asker;
 use super::spec::{LdmRun, LdmTurn};
 use crate::compare::Judgement;
 use crate::compare::ldm as judge;
-use crate::observe::{Gpu, Observed, Spec};
-use crate::plan::LdmPlan;
-use crate::replay::gpu::Adapter;
 use crate::replay::judged::Judged;
+use crate::replay::leg::Leg;
 use crate::replay::rows::Rows;
-use crate::row::Class;
 
 /// Traces that are compared at once: 12 bytes each on both sides.
 const TRACES: usize = 1 << 22;
 
 /// One GPU leg of one scene.
-pub struct LdmLeg<'a> {
-    /// On which it runs.
-    pub adapter: &'a Adapter,
-    /// With words or with native integers.
-    pub path: Path,
-    /// What the spec found.
-    pub spec: &'a Observed<Spec, LdmRun>,
-    /// Which stages run.
-    pub plan: &'a LdmPlan,
-}
+pub type LdmLeg<'a> = Leg<'a, LdmRun>;
 
 /// What a device made of a rotation, from its own points and lists.
 #[derive(Clone, Debug, Default)]
@@ -72,12 +59,8 @@ impl LdmLeg<'_> {
             self.found(turn, &mut stages, &mut judged)?;
             self.sums(turn, &mut stages, &mut judged)?;
         }
-        let label = self.label();
-        judged.rows(&self.spec.label, &label, rows);
-        for pass in self.plan.passes.iter().filter(|pass| !pass.runs) {
-            let reason = format!("plan: {}", pass.reason);
-            rows.skip(pass.name, &self.spec.label, &label, Class::Exact, reason);
-        }
+        judged.rows(&self.spec.label, &self.label(), rows);
+        self.left_out(rows);
         Ok(())
     }
 
@@ -91,27 +74,6 @@ impl LdmLeg<'_> {
             blockers,
             budget,
         )
-    }
-
-    /// The leg's name in rows.
-    pub fn label(&self) -> String {
-        self.adapter.label(self.path)
-    }
-
-    fn runs(&self, stage: &str) -> bool {
-        self.plan.skipped(stage).is_none()
-    }
-
-    /// Puts the device's results beside the spec's by their types.
-    fn beside<T, U>(
-        &self,
-        spec: T,
-        seen: U,
-        judged: impl FnOnce(&T, &U) -> Judgement,
-    ) -> Judgement {
-        let spec = self.spec.derive(spec);
-        let seen = Observed::<Gpu, _>::new(self.label(), seen);
-        crate::compare::compare(&spec, &seen, judged)
     }
 
     /// A share of the spec's time of a stage, which it has for all rotations.

@@ -5,7 +5,6 @@ mod first;
 mod own;
 
 use triptych_gpu::error::GpuError;
-use triptych_gpu::raster::Path;
 use triptych_gpu::rsm::Stages;
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::bound::Bounded;
@@ -15,24 +14,12 @@ use super::kernel::of_coarse;
 use super::spec::{RsmFrame, RsmRun, composed};
 use crate::compare::rsm as judge;
 use crate::dump::FrameArrays;
-use crate::observe::{Gpu, Observed, Spec};
-use crate::plan::RsmPlan;
-use crate::replay::gpu::Adapter;
 use crate::replay::judged::Judged;
+use crate::replay::leg::Leg;
 use crate::replay::rows::Rows;
-use crate::row::Class;
 
 /// One GPU leg of one scene.
-pub struct RsmLeg<'a> {
-    /// On which it runs.
-    pub adapter: &'a Adapter,
-    /// With words or with native integers.
-    pub path: Path,
-    /// What the spec found.
-    pub spec: &'a Observed<Spec, RsmRun>,
-    /// Which stages run.
-    pub plan: &'a RsmPlan,
-}
+pub type RsmLeg<'a> = Leg<'a, RsmRun>;
 
 impl RsmLeg<'_> {
     /// Adds a row for each stage from the spec's input, and one for all of them end to end;
@@ -57,39 +44,14 @@ impl RsmLeg<'_> {
             self.lit(frame, &mut stages, &mut tally)?;
             self.made(frame, &mut stages, &mut tally)?;
         }
-        let label = self.label();
-        tally.rows(&self.spec.label, &label, rows);
-        for pass in self.plan.passes.iter().filter(|pass| !pass.runs) {
-            let reason = format!("plan: {}", pass.reason);
-            rows.skip(pass.name, &self.spec.label, &label, Class::Exact, reason);
-        }
+        tally.rows(&self.spec.label, &self.label(), rows);
+        self.left_out(rows);
         Ok(())
     }
 
     fn stages<'s>(&'s self, frame: &RsmFrame) -> Result<Stages<'s>, GpuError> {
         let setting = self.spec.value.setting(frame);
         Stages::new(&self.adapter.gpu, self.adapter.kernels(self.path), &setting)
-    }
-
-    /// The leg's name in rows.
-    pub fn label(&self) -> String {
-        self.adapter.label(self.path)
-    }
-
-    fn runs(&self, stage: &str) -> bool {
-        self.plan.skipped(stage).is_none()
-    }
-
-    /// Puts the device's results beside the spec's by their types.
-    fn beside<T, U>(
-        &self,
-        spec: T,
-        seen: U,
-        judged: impl FnOnce(&T, &U) -> crate::compare::Judgement,
-    ) -> crate::compare::Judgement {
-        let spec = self.spec.derive(spec);
-        let seen = Observed::<Gpu, _>::new(self.label(), seen);
-        crate::compare::compare(&spec, &seen, judged)
     }
 
     /// What eye and lamp see, and where.
