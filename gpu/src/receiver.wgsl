@@ -40,9 +40,9 @@ fn weight_of(map: Map, normal: vec3<i32>) -> i32 {
 
 // How far the keys of a point's own surface may be from its own.
 fn own_band(map: Map, receiver: Receiver) -> i32 {
-    let moved = i32(receiver.off * 14u + 3u);
+    let moved = receiver.off * 14u;
     if all(receiver.normal == vec3(0)) {
-        return moved;
+        return i32(moved) + 3;
     }
     let rise = u32(abs(along(map.across, receiver.normal)) + abs(along(map.down, receiver.normal)));
     let numerator = (rise + 2u * OFF + 255u) / 256u;
@@ -52,8 +52,9 @@ fn own_band(map: Map, receiver: Receiver) -> i32 {
     if denominator > 0u {
         slope = min((256u * numerator + denominator - 1u) / denominator, STEEPEST);
     }
-    let band = min((slope * told.half) >> (8u - told.half_shift), 1u << 30u);
-    return moved + i32(band) + 1;
+    let within_pixel = min((slope * told.half) >> (8u - told.half_shift), 1u << 30u);
+    let aside = moved * (slope >> 8u) + ((moved * (slope & 255u)) >> 8u);
+    return i32(moved + within_pixel + aside) + 5;
 }
 
 // The keys of a point's pixel that are not its own: `start` to `before` are before it, `behind`

@@ -3,6 +3,10 @@
 use super::{Layers, Map, Maps};
 use crate::grid::lattice::Point;
 
+/// Farthest that a point may be said to be from its surface, in steps: the band of its own layers
+/// has 32 bits.
+pub const OFF_MAX: u32 = 1 << 18;
+
 /// A point that asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Receiver {
@@ -12,7 +16,7 @@ pub struct Receiver {
     /// that it is seen from. Zero for a point that is on no surface, which has no layers of its
     /// own but those at its depth.
     pub normal: Point,
-    /// How far the point may be from its surface, in steps along each axis.
+    /// How far the point may be from its surface, in steps along each axis; at most [`OFF_MAX`].
     pub off: u32,
 }
 
@@ -61,8 +65,9 @@ const SLOPE_MAX: u32 = 127;
 
 /// How far the keys of a point's own surface may be from its own: depth changes by the slope of
 /// the surface in the map, `|dz/dx| + |dz/dy|`, times half a pixel. To that come the roundings
-/// of keys, one and a half, and what the point is off its surface, for which as much as along the
-/// longest diagonal is taken.
+/// of keys, one and a half, and what the point is off its surface: as much as along the longest
+/// diagonal in depth, and across the map as much again times the slope, since the surface is
+/// looked for where the point is, not where it came from.
 ///
 /// Integers throughout. The coarse normal `n` and the map's unit vectors are each off by half in
 /// every component, so a dot product of theirs by less than
@@ -70,10 +75,10 @@ const SLOPE_MAX: u32 = 127;
 /// lowered; both lose 8 bits, so that the slope with 8 bits behind the point fits in 32.
 pub fn own_band(maps: &Maps, map: &Map, receiver: &Receiver) -> i32 {
     const OFF: u32 = 28_380;
-    // 14 keys a step is more than 8 * sqrt(3), of `KEYS_PER_STEP`.
-    let moved = (receiver.off * 14 + 3).cast_signed();
+    // 14 keys a step is more than 8 * sqrt(3), of `KEYS_PER_STEP`: at most 2^22.
+    let moved = receiver.off * 14;
     if receiver.normal == [0; 3] {
-        return moved;
+        return moved.cast_signed() + 3;
     }
     let along = map
         .planes
@@ -86,8 +91,10 @@ pub fn own_band(maps: &Maps, map: &Map, receiver: &Receiver) -> i32 {
         _ => (256 * numerator).div_ceil(denominator).min(steepest),
     };
     // At most 2^15 times 2^16; beyond 2^30 a band holds everything.
-    let band = ((slope * maps.half) >> (8 - maps.half_shift)).min(1 << 30);
-    moved + band.cast_signed() + 1
+    let within_pixel = ((slope * maps.half) >> (8 - maps.half_shift)).min(1 << 30);
+    // The product may have 37 bits, so that the slope's are taken apart: at most 2^29.
+    let aside = moved * (slope >> 8) + ((moved * (slope & 255)) >> 8);
+    (moved + within_pixel + aside).cast_signed() + 5
 }
 
 /// At most 2^28 and a little: by Cauchy and Schwarz.

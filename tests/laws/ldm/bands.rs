@@ -5,8 +5,8 @@ use proptest::test_runner::Config;
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm::{
-    Hits, KEYS_PER_STEP, Layers, Map, Maps, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN, Receiver,
-    Rotation, layers, neighbours, own_band,
+    Hits, KEYS_PER_STEP, Layers, Map, Maps, OFF_MAX, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN,
+    Receiver, Rotation, layers, neighbours, own_band,
 };
 use triptych_spec::rsm::Face;
 
@@ -95,13 +95,49 @@ proptest! {
         }
     }
 
+    /// A point that was moved off a triangle does not see it, however steep that is in the map:
+    /// the triangle is looked for where the point is.
+    #[test]
+    fn a_point_off_its_triangle_does_not_see_it(
+        direction in direction(),
+        (corners, height) in triangle(),
+        [b, c] in prop::array::uniform2(0.0..0.5_f64),
+        by in prop::array::uniform3(-64..=64_i32),
+        resolution in 100..=RESOLUTION_MAX,
+    ) {
+        // So small that pixels are hardly wider than the point is off.
+        let corners = corners.map(|corner| corner.map(|c| c >> 5));
+        let [low, high] = around(&corners);
+        let bounds = [low.map(|c| c - 200), high.map(|c| c + 200)];
+        let maps = Maps::new(&[direction], bounds, bounds, resolution).unwrap();
+        let face = Face::new(corners);
+        let mesh = Blockers { vertices: corners.to_vec(), triangles: vec![[0, 1, 2]] };
+        let layers = layers(&maps, &mesh).unwrap();
+        let map = &maps.maps[0];
+        let facing: f64 = (0..3).map(|i| f64::from(face.unit[i]) * direction[i]).sum();
+        let [x, y] = [0, 1].map(|axis| {
+            let along = (0..3).map(|i| f64::from(map.planes[axis][i]) * f64::from(face.unit[i]));
+            along.sum::<f64>().abs() / 16_384.0
+        });
+        // What is steeper is taken for this steep.
+        prop_assume!(height > 0.0 && (x + y) < 120.0 * facing.abs());
+        let at = |i: usize| {
+            let [p, q, r] = corners.map(|corner| f64::from(corner[i]));
+            whole(p + b * (q - p) + c * (r - p)) + by[i]
+        };
+        let off = by.map(i32::unsigned_abs).into_iter().max().unwrap_or(0) + 1;
+        let receiver = Receiver { point: [at(0), at(1), at(2)], normal: face.coarse, off };
+        let hits = neighbours(&maps, map, &layers, &receiver);
+        prop_assert_eq!([hits.before, hits.behind], [None; 2], "{:?}", receiver);
+    }
+
     /// A band holds what a surface of its slope may be off within half a pixel and a sub-pixel,
     /// and what roundings and the point's own distance add; it is no wider than what roundings of
     /// normals and of itself come to.
     #[test]
     fn bands_are_as_wide_as_slopes_are_steep(
         (direction, normal) in (direction(), direction()),
-        off in 0..200_u32,
+        off in prop_oneof![3 => 0..200_u32, 1 => 0..=OFF_MAX],
         resolution in RESOLUTION_MIN..=RESOLUTION_MAX,
         size in 1..8_388_608_i32,
         on in prop::bool::weighted(0.9),
@@ -131,11 +167,13 @@ proptest! {
             false => 127.0,
         };
         let largest = f64::from(1 << 30);
-        let least = least + ((x + y) / z).min(127.0) * half;
+        let aside = keys * 3.0_f64.sqrt() * f64::from(off);
+        let least = least + ((x + y) / z).min(127.0) * (half + aside);
         // Half a pixel is rounded up to keys, and to 16 bits.
-        let most = most + steepest * (half + 1.0) * (1.0 + 1.0 / 32_768.0) + 1.0;
+        let aside = 14.0 * f64::from(off);
+        let most = most + steepest * ((half + 1.0) * (1.0 + 1.0 / 32_768.0) + aside) + 2.0;
         prop_assert!(band >= least.min(largest), "{} < {}", band, least);
-        prop_assert!(band <= most.min(largest + 4_000.0), "{} > {}", band, most);
+        prop_assert!(band <= most.min(largest + 127.0 * 14.0 * f64::from(OFF_MAX)), "{} > {}", band, most);
     }
 }
 

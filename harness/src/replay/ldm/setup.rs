@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::{Lattice, Point};
-use triptych_spec::ldm::{self, Falloff, Maps, Receiver, directions, rotated, weight};
+use triptych_spec::ldm::{self, Falloff, Maps, OFF_MAX, Receiver, directions, rotated, weight};
 use triptych_spec::raster::count;
 use triptych_spec::rsm::{
     Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, Surface, View, gbuffer,
@@ -152,13 +152,13 @@ impl Setup {
     }
 
     /// Who asks where a device sees these surfaces, which may stray from the spec's: a point that
-    /// is another one is as much farther off its surface.
+    /// is another one is as much farther off its surface, as far as a receiver can say.
     pub(super) fn receivers_of(&self, surfaces: &[Option<Surface>]) -> Vec<Asker> {
         receivers(&self.model, surfaces, |pixel| {
             let strays = self.seen.stray[pixel].into_iter().max().unwrap_or(0);
             match surfaces[pixel] == self.seen.surfaces[pixel] {
                 true => off(self.offset),
-                false => off(self.offset) + strays,
+                false => (off(self.offset) + strays).min(OFF_MAX),
             }
         })
     }
