@@ -1,0 +1,1 @@
+//! Sweeps are what they say, and what is wrong is said.
