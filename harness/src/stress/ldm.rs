@@ -26,7 +26,7 @@ mod texel;
 pub use alone::Alone;
 pub use files::write;
 pub use found::Found;
-pub use judge::{judge, useless};
+pub use judge::{judge, unlike, useless};
 pub use measure::{Bound, Measured};
 pub use parts::{Error, Parts};
 pub use shot::{Form, LdmShot};

@@ -70,7 +70,7 @@ pub fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
 /// What does not hold though it must, as the scene is what it is.
 fn of_form(m: &Measured) -> Option<String> {
     match m.form {
-        Form::Any => None,
+        Form::Any | Form::Alike => None,
         // Nothing but its own surface can be in the way of a point, and that only in maps in which
         // it is steeper than is told apart.
         Form::Convex => (m.covered_more > 0).then(|| {
@@ -87,6 +87,27 @@ fn of_form(m: &Measured) -> Option<String> {
             format!("a sheet is lost at {late} keys more than two bands and bounds of keys")
         }),
     }
+}
+
+/// Steps that say something else than the first of those that must be alike: powers of two, by
+/// which a scene has the same points on the lattice.
+pub fn unlike(all: &[Measured]) -> Vec<Wrong> {
+    let alike = |m: &&Measured| m.form == Form::Alike && m.refused.is_none();
+    let mut steps = all.iter().filter(alike);
+    let Some(first) = steps.next() else {
+        return Vec::new();
+    };
+    let wrong = |m: &Measured| Wrong {
+        sweep: m.sweep.to_owned(),
+        step: m.step.clone(),
+        stage: "occlusion".to_owned(),
+        leg: "spec".to_owned(),
+        what: format!(
+            "what is open is not what it is at {}, to the bit",
+            first.step
+        ),
+    };
+    steps.filter(|m| m.open != first.open).map(wrong).collect()
 }
 
 /// Bounds that are nowhere of use, over all steps.

@@ -87,6 +87,8 @@ pub struct Measured {
     pub found: Found,
     /// Every face by itself.
     pub alone: Alone,
+    /// What is open over each asker, to the bit.
+    pub open: Vec<(u32, u64)>,
     /// Askers over which something is in the way.
     pub covered: u64,
     /// Of these, such that lose more to it than all maps weigh in which their faces are steep.
@@ -110,6 +112,7 @@ impl Measured {
             parts: Parts::default(),
             found: Found::default(),
             alone: Alone::default(),
+            open: Vec::new(),
             covered: 0,
             covered_more: 0,
         }
@@ -119,6 +122,8 @@ impl Measured {
     pub(super) fn of(&mut self, run: &LdmRun) {
         let receivers = run.setup.receivers.len();
         self.counts = [receivers as u64, run.tally.maps, run.tally.keys];
+        let open = run.open.iter();
+        self.open = open.map(|o| (o.whole, o.part.value.to_bits())).collect();
         self.pixel = run.turns.first().map_or(0.0, |turn| turn.maps.pixel);
         for (at, asker) in run.setup.receivers.iter().enumerate() {
             let lost = run.weights(at) - run.open[at].whole;

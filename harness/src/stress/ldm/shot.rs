@@ -41,6 +41,8 @@ pub struct LdmShot {
 pub enum Form {
     /// Nothing.
     Any,
+    /// The same as all others of its kind but for a power of two, so all that is open is.
+    Alike,
     /// Flat or convex: nothing is in the way of any point.
     Convex,
     /// A plane that is seen, and over a part of it a sheet that is not, parallel to it.

@@ -3,7 +3,7 @@
 use super::super::notes::Notes;
 use super::super::table::{dash, laid_out, ratio_of};
 use super::{Bound, Form, Measured};
-use crate::text::{compact, share};
+use crate::text::{compact, count, share};
 
 /// Columns, and how wide they are on a terminal.
 const COLUMNS: [(&str, usize); 19] = [
@@ -40,7 +40,10 @@ pub const ABOVE: &str = "points that ask, and maps; items compared, and that dif
 #[derive(Default)]
 pub struct Table {
     notes: Notes,
-    own: Vec<String>,
+    /// Of each step, the farthest sheet that is lost and the nearest that is found.
+    sheets: Vec<String>,
+    /// Points in maps with a face by itself, such that are steep, and such that meet it.
+    steep: [u64; 3],
     /// Pixels, RMSE by them.
     pixels: Vec<[f64; 2]>,
     /// Directions, RMSE by them without the rays' noise.
@@ -99,20 +102,12 @@ impl Table {
     fn remember(&mut self, m: &Measured) {
         if m.form == Form::Sheets {
             let bands = |n: Option<f64>| n.map_or_else(dash, |n| format!("{n:.3}"));
-            self.own.push(format!(
-                "step {}: the farthest sheet that is lost is at {} bands, the nearest that is found at {}",
-                m.step,
-                bands(m.found.farthest_lost),
-                bands(m.found.nearest_found),
-            ));
+            let (lost, found) = (m.found.farthest_lost, m.found.nearest_found);
+            self.sheets
+                .push(format!("{}: {} / {}", m.step, bands(lost), bands(found)));
         }
-        if m.alone.steep > 0 {
-            let a = &m.alone;
-            self.own.push(format!(
-                "step {}: {} of {} points and maps have a face steeper than is told apart, and {} meet it",
-                m.step, a.steep, a.pairs, a.met
-            ));
-        }
+        let of_step = [m.alone.pairs, m.alone.steep, m.alone.met];
+        self.steep = [0, 1, 2].map(|i| self.steep[i] + of_step[i]);
         let parts = &m.parts;
         if m.sweep == "resolution" && (25.0..=400.0).contains(&m.value) {
             self.pixels.push([m.value, parts.resolution.rmse]);
@@ -129,24 +124,33 @@ impl Table {
             let order = order(points)?;
             let [from, to] = [points.first()?[0], points.last()?[0]];
             Some(format!(
-                "from {from} to {to}, the RMSE {what} falls by {what_power}",
-                what_power = power(order)
+                "from {from} to {to}, the RMSE {what} falls by the power {order:.2} of the number"
             ))
         };
         let orders = [
             of("by pixels", &self.pixels),
             of("by directions, without the rays' noise,", &self.directions),
         ];
-        let own = self.own.iter().cloned();
-        self.notes
-            .lines()
-            .chain(own)
-            .chain(orders.into_iter().flatten())
+        let [pairs, steep, met] = self.steep;
+        let steep = (steep > 0).then(|| {
+            format!(
+                "of {} points in maps, {} have a face steeper than 127 keys a key, by which no more is told \
+                 apart; by itself, {} meet it",
+                count(pairs),
+                count(steep),
+                count(met)
+            )
+        });
+        let sheets = (!self.sheets.is_empty()).then(|| {
+            format!(
+                "the farthest sheet that is lost / the nearest that is found, in bands of a point's own \
+                 surface: {}",
+                self.sheets.join(", ")
+            )
+        });
+        let more = [steep, sheets].into_iter().chain(orders).flatten();
+        self.notes.lines().chain(more)
     }
-}
-
-fn power(order: f64) -> String {
-    format!("the power {order:.2} of the number")
 }
 
 /// The power of a number by which another falls, by least squares of logarithms; `None` of fewer

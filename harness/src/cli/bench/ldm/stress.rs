@@ -52,6 +52,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         scenes: folder.join("scenes-ldm"),
     };
     let (all, mut wrong) = run.sweeps(&sweeps)?;
+    wrong.extend(ldm::unlike(&all));
     if args.patterns.is_empty() {
         wrong.extend(ldm::useless(&all));
     }
