@@ -17,6 +17,7 @@ mod measure;
 mod parts;
 mod scenes;
 mod shot;
+mod sizes;
 mod sweeps;
 mod table;
 #[cfg(test)]

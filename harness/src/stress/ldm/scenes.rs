@@ -28,6 +28,11 @@ pub(super) fn rectangle(middle: Vertex, [u, v]: [Vertex; 2]) -> Triangles {
     ])
 }
 
+/// A floor of two units, seen from above.
+pub(super) fn floor() -> Triangles {
+    square([0.0; 3], 1.0, [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+}
+
 /// A box around a point, with half of each side along the axes.
 pub(super) fn cuboid(middle: Vertex, half: Vertex) -> Triangles {
     let axis = |i: usize| {
@@ -65,7 +70,7 @@ pub(super) fn ball(cuts: u32) -> Triangles {
 
 /// A floor, a wall, two boxes, and triangles in the air: about two units wide.
 pub(super) fn room() -> Triangles {
-    let mut all = square([0.0; 3], 1.0, [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]);
+    let mut all = floor();
     all.extend(rectangle(
         [0.0, 0.5, -1.0],
         [[1.0, 0.0, 0.0], [0.0, 0.5, 0.0]],
@@ -95,7 +100,7 @@ pub(super) fn in_the_air(count: usize, [size, height]: [f64; 2]) -> Triangles {
 
 /// Thin posts on a floor, as far apart as they are from each other's.
 pub(super) fn comb() -> Triangles {
-    let mut all = square([0.0; 3], 1.0, [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]);
+    let mut all = floor();
     for i in 0..6 {
         let x = -0.75 + 0.3 * f64::from(i);
         all.extend(rectangle(

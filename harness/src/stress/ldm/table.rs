@@ -23,8 +23,8 @@ const COLUMNS: [(&str, usize); 19] = [
     ("largest", 9),
     ("of pixels", 10),
     ("in band", 9),
-    ("beside", 8),
-    ("extra", 8),
+    ("beside", 9),
+    ("extra", 9),
     ("own", 8),
 ];
 
