@@ -172,7 +172,7 @@ impl Found {
             .min_by(|a, b| a.ratio(found).total_cmp(&b.ratio(found)));
         let ratio = nearest.map_or(f64::INFINITY, |there| there.ratio(found));
         self.key = worse(self.key, ratio);
-        if !(ratio <= 1.0) {
+        if !(..=1.0).contains(&ratio) {
             self.is_wrong(|| format!("{}: finds {found}, where nothing is", named()));
         }
         if hides.is_some_and(|hides| side.away(found) > hides) {

@@ -39,7 +39,7 @@ pub fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
     }
     for bound in [Bound::Key, Bound::Distance] {
         let ratio = m.worst(bound).map_or(0.0, |(ratio, _)| ratio);
-        if !(ratio <= 1.0) {
+        if !(..=1.0).contains(&ratio) {
             let name = bound.name();
             wrong(
                 "neighbours",

@@ -155,7 +155,7 @@ impl Table {
 
 /// The power of a number by which another falls, by least squares of logarithms; `None` of fewer
 /// than three points, or of zeros.
-pub(super) fn order(points: &[[f64; 2]]) -> Option<f64> {
+fn order(points: &[[f64; 2]]) -> Option<f64> {
     if points.len() < 3 || points.iter().flatten().any(|n| *n <= 0.0) {
         return None;
     }
@@ -179,4 +179,22 @@ fn error(error: f64) -> String {
 /// A line on a terminal.
 pub fn line(cells: &[impl AsRef<str>]) -> String {
     laid_out(&COLUMNS, cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::order;
+
+    #[test]
+    fn orders_are_those_of_powers() {
+        let of = |power: f64| [1.0, 2.0, 4.0, 8.0].map(|n: f64| [n, 3.0 * n.powf(-power)]);
+        let found = order(&of(0.5)).expect("four points");
+        assert!((found - 0.5).abs() < 1e-12, "{found}");
+        assert_eq!(order(&of(1.0)[..2]), None, "two points are any line");
+        assert_eq!(
+            order(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]]),
+            None,
+            "nothing is left"
+        );
+    }
 }

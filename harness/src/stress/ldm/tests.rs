@@ -1,6 +1,5 @@
 //! Sweeps are what they say, and what is wrong is said.
 
-use super::table::order;
 use super::*;
 use crate::digest::tests::row;
 use crate::row::{Class, Row};
@@ -293,17 +292,4 @@ fn parts_add_up_and_name_the_culprit() {
     for parts in [near, coarse, few] {
         assert!(parts.rest < 1e-12 && parts.askers > 50, "{parts:?}");
     }
-}
-
-#[test]
-fn orders_are_those_of_powers() {
-    let of = |power: f64| [1.0, 2.0, 4.0, 8.0].map(|n: f64| [n, 3.0 * n.powf(-power)]);
-    let found = order(&of(0.5)).expect("four points");
-    assert!((found - 0.5).abs() < 1e-12, "{found}");
-    assert_eq!(order(&of(1.0)[..2]), None, "two points are any line");
-    assert_eq!(
-        order(&[[1.0, 1.0], [2.0, 0.0], [3.0, 1.0]]),
-        None,
-        "nothing is left"
-    );
 }
