@@ -3,10 +3,10 @@
 //!
 //! A step is a scene with an `[ldm]`, as any scene file is, and replayed as one is: spec, every
 //! adapter from the spec's lists and from its own, Embree. Beside that stands the scene as its files
-//! have it, in `f64` and not rounded to the lattice ([`exact`]): it says what points must find
-//! ([`found`]), and which part of the error of what is open comes from the number of directions,
-//! from rounding, and from pixels ([`parts`]). And each face is looked at by itself, where nothing
-//! is in its way ([`alone`]).
+//! have it, in `f64` and not rounded to the lattice (`exact.rs`): it says what points must find
+//! (`found.rs`), and which part of the error of what is open comes from the number of directions,
+//! from rounding, and from pixels (`parts.rs`). And each face is looked at by itself, where nothing
+//! is in its way (`alone.rs`).
 
 mod alone;
 mod exact;

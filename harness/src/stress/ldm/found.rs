@@ -1,7 +1,7 @@
 //! What points find in maps, held against the scene as its files have it.
 //!
 //! For each asker and map, the triangles at the middle of its pixel are worked out without any
-//! rounding, each with the interval that its key is in ([`super::texel`]). Two things must hold on
+//! rounding, each with the interval that its key is in (`texel.rs`). Two things must hold on
 //! both sides of the point's own band, and either can fail:
 //!
 //! - **nothing invented**: what is found is the key of a triangle that the list has or may have, so
