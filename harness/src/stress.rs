@@ -9,6 +9,7 @@
 mod files;
 pub mod grid;
 mod judge;
+pub mod ldm;
 mod measure;
 mod notes;
 mod numbers;

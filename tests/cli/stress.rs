@@ -1,4 +1,4 @@
-//! `triptych bench --stress`.
+//! `triptych bench --stress`, and those of families.
 
 use std::fs;
 
@@ -128,6 +128,82 @@ fn extremes_of_grids_have_their_own_help() {
     }
     place
         .run(&["bench", "grid", "dragon", "--stress"])
+        .expect(2);
+}
+
+#[test]
+fn maps_are_driven_to_their_extremes() {
+    let place = Place::new("stress-ldm");
+    let arguments = [
+        "bench",
+        "ldm",
+        "--stress",
+        "convex",
+        "--adapter",
+        "swiftshader",
+    ];
+    let files = ["--json", "o.jsonl", "--csv", "o.csv", "--out", "out"];
+    let ran = place.run(&[&arguments[..], &files].concat()).expect(0);
+    assert_eq!(ran.stderr, "");
+    let lines = ran.stdout.lines().map(str::trim_start);
+    let steps = lines.filter(|line| {
+        ["8 ", "32 ", "128 ", "512 "]
+            .iter()
+            .any(|n| line.starts_with(n))
+    });
+    assert_eq!(steps.count(), 4, "a line for each step:\n{}", ran.stdout);
+
+    let mut rows = json(&place.root.join("o.jsonl"));
+    let summary = rows.pop().expect("a summary");
+    assert_eq!(count(&summary, "diverging"), 0);
+    for leg in ["embree", "gpu@SwiftShader/compute"] {
+        let of_leg = rows.iter().filter(|r| r["b"] == leg);
+        assert!(of_leg.count() >= 4, "{leg}: each step");
+    }
+    let table = fs::read_to_string(place.root.join("o.csv")).expect("a table");
+    assert_eq!(
+        table.lines().count(),
+        rows.len() + 1,
+        "a line each, and names"
+    );
+    let page = ran.stdout.lines().last().expect("where the page lies");
+    let page = page.strip_prefix("Report: ").expect("where the page lies");
+    let page = fs::read_to_string(place.root.join(page)).expect("a page");
+    for part in [
+        "# Stability of layered depth maps, ",
+        "4 steps, ",
+        "points find what they must",
+        "| key | spec |",
+        "| 512 |",
+    ] {
+        assert!(page.contains(part), "{page} lacks {part}");
+    }
+    // Every step can be replayed by itself.
+    let scene = "out/scenes-ldm/convex/32/scene.toml";
+    let replay = ["replay", scene, "--leg", "embree", "--no-cache"];
+    place.run(&replay).expect(0);
+}
+
+#[test]
+fn extremes_of_maps_have_their_own_help() {
+    let place = Place::new("stress-ldm-help");
+    let ran = place
+        .run(&["bench", "ldm", "--stress", "no-such"])
+        .expect(2);
+    assert_eq!(
+        ran.stderr,
+        "triptych: no-such: no sweep is called so; there are: grazing, convex, slope, layers, \
+         resolution, directions, scale, offset, lattice, sliver, tiny\n"
+    );
+    let own = ["bench", "ldm", "--stress", "--help"];
+    for arguments in [&own[..], &["bench", "ldm", "--help"]] {
+        let help = place.run(arguments).expect(0);
+        for part in ["Examples:", "bench ldm --stress"] {
+            assert!(help.stdout.contains(part), "{}", help.stdout);
+        }
+    }
+    place
+        .run(&["bench", "ldm", "ldm/bunny", "--stress"])
         .expect(2);
 }
 

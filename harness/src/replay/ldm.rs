@@ -25,9 +25,9 @@ use crate::compare::{Judgement, compare};
 use crate::observe::{Embree, Observed};
 use crate::plan::LdmPlan;
 use crate::row::Class;
-pub use embree::{Off, SAMPLES, Seen, ask, random, same};
+pub use embree::{Off, SAMPLES, Seen, ask, passes, random, same};
 pub use gpu::{LdmLeg, Made};
-pub use setup::{Asker, Setup, Turn};
+pub use setup::{Asker, Setup, Turn, bounds};
 pub use spec::{LdmRun, LdmTurn, Times};
 pub use tally::Tally;
 

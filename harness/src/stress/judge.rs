@@ -42,6 +42,31 @@ pub fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
     of_rows(measured.sweep, &measured.step, &measured.rows, legs)
 }
 
+/// What is wrong with what a step was refused with, or was not; `None` if it was not refused and
+/// need not be, so that there is more to judge. `must` is a part of the words.
+pub(super) fn refusal(
+    (sweep, step): (&str, &str),
+    must: Option<&str>,
+    refused: Option<&str>,
+) -> Option<Vec<Wrong>> {
+    let what = match (must, refused) {
+        (None, None) => return None,
+        (Some(part), Some(words)) if words.contains(part) => return Some(Vec::new()),
+        (Some(part), Some(words)) => {
+            format!("is refused with \"{words}\", must be with \"{part}\"")
+        }
+        (Some(part), None) => format!("must be refused with \"{part}\""),
+        (None, Some(words)) => format!("is refused: {words}"),
+    };
+    Some(vec![Wrong {
+        sweep: sweep.to_owned(),
+        step: step.to_owned(),
+        stage: "all".to_owned(),
+        leg: "spec".to_owned(),
+        what,
+    }])
+}
+
 /// What does not hold of a step's rows.
 pub(super) fn of_rows(sweep: &str, step: &str, given: &[Row], legs: &[String]) -> Vec<Wrong> {
     let wrong = |stage: &str, leg: &str, what: String| Wrong {

@@ -106,10 +106,7 @@ impl Measured {
 
     /// The same of the rows of which this is true.
     pub(super) fn worst_of(&self, is_of: impl Fn(&Row) -> bool) -> Option<(f64, &Row)> {
-        let rows = self.rows.iter().filter(|row| is_of(row));
-        let judged = rows.filter(|row| row.skipped.is_none());
-        let ratios = judged.filter_map(|row| Some((row.error_over_bound?, row)));
-        ratios.reduce(|a, b| if exceeds(b.0, a.0) { b } else { a })
+        worst_of(&self.rows, is_of)
     }
 
     /// Largest share of a vote's pairs that are in class edge or unresolved; `None` if
@@ -137,6 +134,14 @@ impl Measured {
         let rows = self.rows.iter().filter(move |row| reason(row));
         rows.map(|row| (row, row.skipped.as_deref().unwrap_or_default()))
     }
+}
+
+/// The largest error over bound of some rows, and whose; `None` if nothing was compared.
+pub(super) fn worst_of(rows: &[Row], is_of: impl Fn(&Row) -> bool) -> Option<(f64, &Row)> {
+    let rows = rows.iter().filter(|row| is_of(row));
+    let judged = rows.filter(|row| row.skipped.is_none());
+    let ratios = judged.filter_map(|row| Some((row.error_over_bound?, row)));
+    ratios.reduce(|a, b| if exceeds(b.0, a.0) { b } else { a })
 }
 
 /// Whether `b` is the larger of two errors over bound: one that is no number is larger

@@ -128,6 +128,18 @@ impl Shot {
     }
 }
 
+/// Triangles as OBJ, each with corners of its own.
+pub(super) fn mesh(triangles: &[[Vertex; 3]]) -> String {
+    let mut text = String::new();
+    for corners in triangles {
+        for [x, y, z] in corners {
+            writeln!(text, "v {x:e} {y:e} {z:e}").expect("memory takes all");
+        }
+        text += "f -3 -2 -1\n";
+    }
+    text
+}
+
 /// Whether the real mesh was fetched.
 pub fn has_real() -> bool {
     corpus::meshes().join(REAL).is_file()

@@ -1,4 +1,4 @@
-//! Where the results of `bench --stress` and `bench grid --stress` go.
+//! Where the results of `bench --stress`, `bench grid --stress` and `bench ldm --stress` go.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

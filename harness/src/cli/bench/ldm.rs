@@ -1,5 +1,7 @@
 //! `triptych bench ldm`.
 
+mod stress;
+
 use std::io::{Write, stdout};
 use std::num::NonZeroU32;
 use std::path::PathBuf;
@@ -18,10 +20,14 @@ use crate::text::clean;
     triptych bench ldm                        a Sponza and a ball of fur, as the paper has them\n  \
     triptych bench ldm --cuts 1               and every triangle cut into four\n  \
     triptych bench ldm ldm/bunny --adapter llvmpipe --runs 3\n  \
-    triptych bench ldm --rival                maps against horizons of the view, at equal time\n\n\
+    triptych bench ldm --rival                maps against horizons of the view, at equal time\n  \
+    triptych bench ldm --stress               what holds at the extremes\n\n\
     Exit code 0 whatever is measured: a benchmark judges no machine. 2: nothing could be measured.")]
 #[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, or scene files with an [ldm]; without one a Sponza and a ball of fur")))]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Args {
+    #[command(subcommand)]
+    extremes: Option<Extremes>,
     #[command(flatten)]
     scenes: Scenes,
     #[command(flatten)]
@@ -40,7 +46,18 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
+/// What is not measured, but held against bounds.
+#[derive(clap::Subcommand)]
+enum Extremes {
+    /// What holds at the extremes, and where errors come from
+    #[command(long_flag = "stress")]
+    Stress(stress::Args),
+}
+
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
+    if let Some(Extremes::Stress(args)) = &args.extremes {
+        return stress::run(args);
+    }
     let Start {
         scenes,
         adapters,

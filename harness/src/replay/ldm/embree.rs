@@ -14,8 +14,8 @@ use triptych_spec::ldm::{Falloff, Map, WEIGHT_BITS, weight};
 use super::setup::{Asker, Setup};
 use super::spec::LdmRun;
 use crate::compare::embree::{MapVote, Sampled, compare_maps};
-use crate::embree::EmbreeError;
 use crate::embree::rays::{RayAnswers, RayScene};
+use crate::embree::{EmbreeError, Hit};
 use crate::generate::Random;
 use crate::vector::{add, length, normalize};
 
@@ -190,17 +190,26 @@ pub fn random(
 
 /// Which part of what comes along a ray passes.
 fn passed(falloff: Falloff, ray: &Ray, scene: &RayScene) -> f64 {
-    match falloff {
-        Falloff::None => f64::from(u8::from(!scene.occluded(ray))),
-        Falloff::Distance { most, power } => scene.closest(ray).map_or(1.0, |hit| {
-            let steps = f64::from(hit.t) * length(ray.direction.map(f64::from));
+    if falloff == Falloff::None {
+        return f64::from(u8::from(!scene.occluded(ray)));
+    }
+    let steps = |hit: Hit| f64::from(hit.t) * length(ray.direction.map(f64::from));
+    passes(falloff, scene.closest(ray).map(steps))
+}
+
+/// Which part passes by what is first met, so many steps away.
+pub fn passes(falloff: Falloff, steps: Option<f64>) -> f64 {
+    match (steps, falloff) {
+        (None, _) => 1.0,
+        (Some(_), Falloff::None) => 0.0,
+        (Some(steps), Falloff::Distance { most, power }) => {
             let part = steps / f64::from(most);
             match part < 1.0 {
                 true if power == 0 => 0.0,
                 true => libm::pow(part, f64::from(power)),
                 false => 1.0,
             }
-        }),
+        }
     }
 }
 

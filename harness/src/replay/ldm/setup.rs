@@ -179,7 +179,7 @@ impl Setup {
 }
 
 /// The box around points; `None` if there are none.
-pub(super) fn bounds(points: impl Iterator<Item = Point>) -> Option<[Point; 2]> {
+pub fn bounds(points: impl Iterator<Item = Point>) -> Option<[Point; 2]> {
     points.map(|p| [p, p]).reduce(|[low, high], [p, _]| {
         let least = [0, 1, 2].map(|i| low[i].min(p[i]));
         [least, [0, 1, 2].map(|i| high[i].max(p[i]))]

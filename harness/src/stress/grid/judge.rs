@@ -1,6 +1,6 @@
 //! What must hold of every step, and of all of them.
 
-use super::super::judge::{Wrong, of_rows, unreached};
+use super::super::judge::{Wrong, of_rows, refusal, unreached};
 use super::{Bound, Measured};
 
 /// What does not hold of a step. `legs` are all that must have a row.
@@ -12,18 +12,13 @@ pub fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
         leg: leg.to_owned(),
         what,
     };
-    match (measured.must_refuse, &measured.refused) {
-        (Some(part), Some(words)) if words.contains(part) => return Vec::new(),
-        (Some(part), Some(words)) => {
-            let what = format!("is refused with \"{words}\", must be with \"{part}\"");
-            return vec![wrong("all", "spec", what)];
-        }
-        (Some(part), None) => {
-            let what = format!("must be refused with \"{part}\"");
-            return vec![wrong("all", "spec", what)];
-        }
-        (None, Some(words)) => return vec![wrong("all", "spec", format!("is refused: {words}"))],
-        (None, None) => {}
+    let refused = refusal(
+        (measured.sweep, &measured.step),
+        measured.must_refuse,
+        measured.refused.as_deref(),
+    );
+    if let Some(all) = refused {
+        return all;
     }
     let mut all = of_rows(measured.sweep, &measured.step, &measured.rows, legs);
     let walks = &measured.walks;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::super::measure::exceeds;
+use super::super::measure::worst_of;
 use super::super::sweeps::Step;
 use super::{EVERY, GridShot, Walks};
 use crate::corpus::Entry;
@@ -112,10 +112,7 @@ impl Measured {
 
     /// The same of the rows of which this is true.
     pub(super) fn worst_of(&self, is_of: impl Fn(&Row) -> bool) -> Option<(f64, &Row)> {
-        let rows = self.rows.iter().filter(|row| is_of(row));
-        let judged = rows.filter(|row| row.skipped.is_none());
-        let ratios = judged.filter_map(|row| Some((row.error_over_bound?, row)));
-        ratios.reduce(|a, b| if exceeds(b.0, a.0) { b } else { a })
+        worst_of(&self.rows, is_of)
     }
 
     /// Share of Embree's rays in class edge, of each of its queries: any, closest.

@@ -1,12 +1,11 @@
 //! A step's scene, as files, and the rays that no file can ask for.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::{Blockers, Grid};
 
-use super::super::shot::Vertex;
+use super::super::shot::{Vertex, mesh};
 use super::near;
 use crate::error::InputError;
 
@@ -76,7 +75,7 @@ impl GridShot {
         let path = folder.join("scene.toml");
         let fail = |e: std::io::Error| InputError::new(folder, format!("cannot be written: {e}"));
         std::fs::create_dir_all(folder).map_err(fail)?;
-        std::fs::write(folder.join("mesh.obj"), self.mesh()).map_err(fail)?;
+        std::fs::write(folder.join("mesh.obj"), mesh(&self.triangles)).map_err(fail)?;
         std::fs::write(&path, self.scene()).map_err(fail)?;
         Ok(path)
     }
@@ -101,17 +100,5 @@ impl GridShot {
             "rays = {{ {} }}\n\n[budget]\nedge = 1.0\n",
             kinds.join(", ")
         )
-    }
-
-    /// The mesh as OBJ.
-    pub fn mesh(&self) -> String {
-        let mut text = String::new();
-        for corners in &self.triangles {
-            for [x, y, z] in corners {
-                writeln!(text, "v {x:e} {y:e} {z:e}").expect("memory takes all");
-            }
-            text += "f -3 -2 -1\n";
-        }
-        text
     }
 }
