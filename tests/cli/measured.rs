@@ -82,9 +82,19 @@ fn maps_are_measured() {
     place.run(&[&command[..], &files].concat()).expect(0);
     let csv = only(&place.root.join("t"), "csv").replace("\"room, each triangle as 4\"", "cut");
     let rows = rows(&csv);
-    let parts = ["frame", "count", "scan", "fill", "sort", "ask"];
-    assert_eq!(rows.len(), 2 * 12 * parts.len(), "{csv}");
+    let parts = ["frame", "build", "count", "scan", "fill", "sort", "ask"];
+    let (runs, chains): (Vec<_>, Vec<_>) = rows.iter().partition(|row| row["layout"] == "runs");
+    assert_eq!(runs.len(), 2 * 12 * parts.len(), "{csv}");
     let number = |row: &BTreeMap<&str, &str>, column: &str| row[column].parse::<f64>();
+    let of_chains = chains.iter().map(|row| (row["resolution"], row["part"]));
+    let must = ["20", "50"].map(|r| ["build", "link", "sort"].map(|part| (r, part)));
+    assert_eq!(of_chains.collect::<Vec<_>>(), [must, must].concat().concat());
+    for row in chains {
+        let number = |column| number(row, column).expect("a number");
+        let lists = 4.0 * number("pixels") + 8.0 * number("keys");
+        assert!(number("lists_bytes").to_bits() == lists.to_bits() && number("time_ms") > 0.0);
+        assert_eq!([row["frame_ms"], row["rmse_same"]], [""; 2], "nothing is asked");
+    }
     let frames = rows.iter().filter(|row| row["part"] == "frame");
     let error = |scene: &str, resolution: &str| {
         let mut own = frames.clone();

@@ -1,6 +1,9 @@
 //! Layered depth maps: how long maps take to be made and asked, against how far what they say is
 //! open is from what rays say; over the number of directions and the resolution.
 //!
+//! Lists are runs of one array; at a scene's own setting, and at a resolution of 50, they are built
+//! as the paper's linked lists as well.
+//!
 //! A frame is everything from corners on the lattice to what is open over each receiver: lists of
 //! all maps built anew, and all of them asked. Not timed: transfers, compilation, what the eye
 //! sees, the rows of maps.
@@ -13,7 +16,9 @@
 mod case;
 mod front;
 mod gpu;
+mod judge;
 pub mod rival;
+mod rounds;
 mod run;
 mod table;
 
@@ -56,6 +61,8 @@ pub struct Row {
     pub leg: String,
     /// Whose clock: `device` or `host`.
     pub clock: &'static str,
+    /// How lists lie in memory.
+    pub layout: Layout,
     /// Directions of the set.
     pub directions: u32,
     /// Pixels across the scene's diagonal.
@@ -68,15 +75,35 @@ pub struct Row {
     pub pixels: u64,
     /// Keys in them.
     pub keys: u64,
-    /// Milliseconds from the first pass to the end of the last.
-    pub frame: Spread,
+    /// Milliseconds from the first pass to lists in order.
+    pub build: Spread,
     /// Milliseconds of each part.
     pub parts: Vec<(&'static str, Spread)>,
     /// Bytes of lists, and of all that a frame works on but receivers.
     pub memory: [u64; 2],
-    /// The least time that the adapter needs for what must be moved, over the median: of the build,
-    /// and of asking.
-    pub of_bound: Option<[f64; 2]>,
+    /// The least time that the adapter needs for what a build must move, over the median.
+    pub of_bound: Option<f64>,
+    /// What asking the lists took, and found.
+    pub asked: Option<Asked>,
+}
+
+/// How lists lie in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// As runs of one array: counted, summed up, filled, sorted.
+    Runs,
+    /// As the paper's linked lists: linked in whatever order triangles come, then sorted. Nothing
+    /// asks them: with keys as far apart as entries lie, there is no looking for one by halves.
+    Chains,
+}
+
+/// Maps that were asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    /// Milliseconds from the first pass to the end of the last.
+    pub frame: Spread,
+    /// The least time that the adapter needs for what asking must move, over the median.
+    pub of_bound: Option<f64>,
     /// Root of the mean squared difference of what is open from rays in the same directions, and
     /// the largest.
     pub same: [f64; 2],
@@ -84,6 +111,16 @@ pub struct Row {
     pub random: [f64; 2],
     /// Root of the mean variance of what those say.
     pub noise: f64,
+}
+
+impl Layout {
+    /// As tables have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Runs => "runs",
+            Self::Chains => "chains",
+        }
+    }
 }
 
 impl Sweep {

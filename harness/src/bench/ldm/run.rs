@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use triptych_spec::ldm::Maps;
+
 use super::super::legs::{Station, stations};
 use super::super::{Ceilings, Machine, Progress};
 use super::case::Case;
 use super::rival::{self, Contest};
-use super::{SCENES, Sweep, gpu};
+use super::{Row, SCENES, Sweep, gpu, judge};
 use crate::corpus::Entry;
 use crate::mesh::Intake;
 use crate::replay::gpu::Adapter;
@@ -17,6 +19,9 @@ pub const DIRECTIONS: [u32; 6] = [16, 64, 128, 256, 512, 1024];
 
 /// Resolutions, with a scene's own number of directions.
 pub const RESOLUTIONS: [u32; 5] = [25, 50, 100, 200, 400];
+
+/// Beside a scene's own, the resolution at which lists are also built as the paper has them.
+const CHAINED: u32 = 50;
 
 /// Pairs of a triangle and a map, and of a receiver and a map, up to which a software driver is
 /// measured: some seconds.
@@ -79,6 +84,7 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
             let settings = settings(&case);
             let steps = settings.len() * stations.len();
             progress.begin(&name, u32::try_from(steps).unwrap_or(u32::MAX));
+            let own = settings[0];
             for (directions, resolution) in settings {
                 let turn = match case.turn(directions, resolution) {
                     Ok(turn) => turn,
@@ -93,14 +99,16 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
                         continue;
                     }
                     let of = (station, ceilings.as_ref());
-                    match gpu::measure(of, &case, &turn.maps, directions, options.runs) {
-                        Ok(row) => sweep.rows.push(row),
-                        Err(why) => {
-                            let adapter = &station.adapter.gpu.name;
-                            sweep.not(&format!(
-                                "{name}: {directions} directions, {resolution} pixels: gpu@{adapter}: {why}"
-                            ));
-                        }
+                    let as_chains =
+                        directions == own.0 && (resolution == own.1 || resolution == CHAINED);
+                    let setting = (&turn.maps, directions, as_chains);
+                    let (rows, why) = measured(of, &case, setting, options.runs);
+                    sweep.rows.extend(rows);
+                    if let Some(why) = why {
+                        let adapter = &station.adapter.gpu.name;
+                        sweep.not(&format!(
+                            "{name}: {directions} directions, {resolution} pixels: gpu@{adapter}: {why}"
+                        ));
                     }
                     progress.step();
                 }
@@ -109,6 +117,20 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
     }
     progress.end();
     Ok(sweep)
+}
+
+/// The rows of a setting, and why there are not all of them.
+fn measured(
+    of: (&Station<'_>, Option<&Ceilings>),
+    case: &Case<'_>,
+    (maps, directions, as_chains): (&Maps, u32, bool),
+    runs: u32,
+) -> (Vec<Row>, Option<String>) {
+    let rows = judge::made(of.0, case, maps, as_chains).and_then(|made| {
+        let rows = gpu::measure(of, case, (maps, directions), &made, runs)?;
+        Ok((rows, made.without_chains()))
+    });
+    rows.unwrap_or_else(|why| (Vec::new(), Some(why)))
 }
 
 /// The scene's own directions and resolution, then one of them changed.
@@ -161,18 +183,20 @@ impl Sweep {
                 };
                 for station in stations.iter().filter(|s| is_fit(s, case, directions)) {
                     let of = (station, None);
-                    match gpu::measure(of, case, &turn.maps, directions, runs) {
-                        Ok(row) => self.contests.push(Contest {
-                            scene: row.scene,
-                            leg: format!("gpu@{}", station.adapter.gpu.name),
-                            far,
-                            technique: "maps",
-                            setting: format!("{directions} at {resolution}"),
-                            time: row.frame,
-                            random: row.random,
-                            noise: row.noise,
-                        }),
-                        Err(why) => self.not(&format!("{}: maps: {why}", case.name)),
+                    let (rows, why) = measured(of, case, (&turn.maps, directions, false), runs);
+                    let asked = rows.into_iter().filter_map(|row| row.asked);
+                    self.contests.extend(asked.map(|asked| Contest {
+                        scene: case.name.clone(),
+                        leg: format!("gpu@{}", station.adapter.gpu.name),
+                        far,
+                        technique: "maps",
+                        setting: format!("{directions} at {resolution}"),
+                        time: asked.frame,
+                        random: asked.random,
+                        noise: asked.noise,
+                    }));
+                    if let Some(why) = why {
+                        self.not(&format!("{}: maps: {why}", case.name));
                     }
                 }
             }
