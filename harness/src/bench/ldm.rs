@@ -8,18 +8,22 @@
 //! all maps built anew, and all of them asked. Not timed: transfers, compilation, what the eye
 //! sees, the rows of maps.
 //!
+//! [`skips`] measures what the plan leaves out, [`rival`] horizons in screen space.
+//!
 //! Two references separate what the parameters cost: Embree's rays in the same directions, from
 //! which maps differ by their resolution alone, and its rays in random directions, whose own
 //! variance is told. An adapter is measured only if its lists are the spec's, in maps that are
 //! drawn by the spec for that, and its sums what the spec makes of them, at some receivers.
 
 mod case;
+mod flip;
 mod front;
 mod gpu;
 mod judge;
 pub mod rival;
 mod rounds;
 mod run;
+pub mod skips;
 mod table;
 
 use super::{Machine, Spread};
@@ -48,6 +52,10 @@ pub struct Sweep {
     pub rows: Vec<Row>,
     /// Maps and their rival, if that was asked for.
     pub contests: Vec<rival::Contest>,
+    /// What the plan leaves out, if that was asked for.
+    pub skips: Vec<skips::Skips>,
+    /// Of each scene, what random rays and maps say is open, and FLIP between them, as PNG.
+    pub pictures: Vec<(String, Vec<u8>)>,
     /// What was not, and why; whose clock is not the device's.
     pub remarks: Vec<String>,
 }
@@ -111,6 +119,9 @@ pub struct Asked {
     pub random: [f64; 2],
     /// Root of the mean variance of what those say.
     pub noise: f64,
+    /// The mean of FLIP between the picture of all that is open and that of random rays, and between
+    /// two pictures of half of those rays; `None`: nobody looked.
+    pub flip: Option<[f64; 2]>,
 }
 
 impl Layout {
@@ -126,11 +137,18 @@ impl Layout {
 impl Sweep {
     /// The stem of the files.
     pub fn stem(&self) -> String {
-        let what = if self.contests.is_empty() {
-            "ldm"
-        } else {
-            "ldm-rival"
+        let what = match () {
+            () if !self.contests.is_empty() => "ldm-rival",
+            () if !self.skips.is_empty() => "ldm-skips",
+            () => "ldm",
         };
         format!("{what}-{}-{}", self.date, self.machine.slug)
+    }
+
+    /// The name of a scene's picture.
+    pub fn picture(&self, scene: &str) -> String {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let scene: String = scene.chars().map(plain).collect();
+        format!("{}-{scene}.png", self.stem())
     }
 }

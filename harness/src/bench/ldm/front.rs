@@ -116,6 +116,7 @@ mod tests {
                 same: [error / 2.0, error],
                 random: [error, 2.0 * error],
                 noise: 1e-3,
+                flip: Some([0.5, 0.25]),
             }),
         }
     }
@@ -141,6 +142,8 @@ mod tests {
                 row(64, 100, 1e-3),
             ],
             contests: Vec::new(),
+            skips: Vec::new(),
+            pictures: vec![("ldm/a".to_owned(), Vec::new())],
             remarks: Vec::new(),
         }
     }
@@ -173,5 +176,6 @@ mod tests {
         assert!(lines.iter().all(|line| line.split(',').count() == columns));
         let page = super::super::page(&sweep());
         assert!(page.contains("| 3.88 |"), "keys a pixel: {page}");
+        assert!(page.contains("| 0.5000 (0.2500) |") && page.contains("--ldm-a.png)"));
     }
 }

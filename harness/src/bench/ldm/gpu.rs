@@ -12,6 +12,16 @@ use super::judge::{Made, check_chains, check_sums, opened, words};
 use super::rounds::{Frame, Rounds, part, rounds, spread};
 use super::{Asked, Layout, Row};
 
+/// What was measured of a setting.
+pub(super) struct Measured {
+    /// Lists as runs, and as the paper has them if they were made.
+    pub(super) rows: Vec<Row>,
+    /// What it looks like, as PNG.
+    pub(super) picture: Option<Vec<u8>>,
+    /// Why a row that was asked for is missing.
+    pub(super) missing: Option<String>,
+}
+
 /// Measures maps on one adapter: lists as runs, and as the paper has them if they were made.
 ///
 /// # Errors
@@ -20,9 +30,9 @@ pub(super) fn measure(
     (station, ceilings): (&Station<'_>, Option<&Ceilings>),
     case: &Case<'_>,
     (maps, directions): (&Maps, u32),
-    made: &Made,
+    (made, with_picture): (&Made, bool),
     runs: u32,
-) -> Result<Vec<Row>, String> {
+) -> Result<Measured, String> {
     let kernels = Kernels::trusted(made.native, |sources| sources);
     let gpu = &station.adapter.gpu;
     let of = (maps, &case.setup.blockers);
@@ -50,16 +60,25 @@ pub(super) fn measure(
         maps,
         made,
     };
-    let row = of.runs(directions, &times[0], timed.bytes, &opened);
-    let Some(chains) = &chains else {
-        return Ok(vec![row]);
-    };
-    check_chains(maps, &made.layers, chains.chains().map_err(words)?)?;
-    let other = of.chains(&row, &times[1], chains.bytes);
-    Ok(vec![row, other])
+    let mut row = of.runs(directions, &times[0], timed.bytes, &opened);
+    let looked = with_picture.then(|| case.look(directions, &opened));
+    let looked = looked.transpose()?;
+    if let (Some(asked), Some(looked)) = (&mut row.asked, &looked) {
+        asked.flip = Some(looked.flip);
+    }
+    let mut rows = vec![row];
+    if let Some(chains) = &chains {
+        check_chains(maps, &made.layers, chains.chains().map_err(words)?)?;
+        rows.push(of.chains(&rows[0], &times[1], chains.bytes));
+    }
+    Ok(Measured {
+        rows,
+        picture: looked.map(|looked| looked.png),
+        missing: made.without_chains(),
+    })
 }
 
-/// What was measured.
+/// What a row is made of.
 struct Of<'m> {
     station: &'m Station<'m>,
     ceilings: Option<&'m Ceilings>,
@@ -81,6 +100,7 @@ impl Of<'_> {
             same: off.same,
             random: off.random,
             noise: off.noise,
+            flip: None,
         };
         Row {
             scene: case.name.clone(),

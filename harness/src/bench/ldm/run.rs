@@ -8,7 +8,7 @@ use super::super::legs::{Station, stations};
 use super::super::{Ceilings, Machine, Progress};
 use super::case::Case;
 use super::rival::{self, Contest};
-use super::{Row, SCENES, Sweep, gpu, judge};
+use super::{SCENES, Sweep, gpu, judge, skips};
 use crate::corpus::Entry;
 use crate::mesh::Intake;
 use crate::replay::gpu::Adapter;
@@ -36,6 +36,8 @@ pub struct Options {
     pub cuts: u32,
     /// Whether maps are held against horizons, at their own resolution, in place of sweeps.
     pub rival: bool,
+    /// Whether what the plan leaves out is measured, with and without, in place of sweeps.
+    pub skips: bool,
     /// Rounds that count, at least one.
     pub runs: u32,
     /// Today, year-month-day.
@@ -53,6 +55,8 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
         runs: options.runs,
         rows: Vec::new(),
         contests: Vec::new(),
+        skips: Vec::new(),
+        pictures: Vec::new(),
         remarks: Vec::new(),
     };
     let stations = stations(adapters, &mut sweep.remarks);
@@ -70,48 +74,20 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
                 0 => loaded.name.clone(),
                 _ => format!("{}, each triangle as {}", loaded.name, 4_u32.pow(cuts)),
             };
-            let mut case = match Case::new(&name, loaded, cuts) {
-                Ok(case) => case,
-                Err(why) => {
-                    sweep.not(&format!("{name}: {why}"));
-                    continue;
+            let case = Case::new(&name, loaded, cuts);
+            let asked = case.and_then(|mut case| {
+                if !options.skips {
+                    case.ask()?;
                 }
-            };
-            if options.rival {
-                sweep.contend(&mut case, &stations, options.runs, progress);
-                continue;
-            }
-            let settings = settings(&case);
-            let steps = settings.len() * stations.len();
-            progress.begin(&name, u32::try_from(steps).unwrap_or(u32::MAX));
-            let own = settings[0];
-            for (directions, resolution) in settings {
-                let turn = match case.turn(directions, resolution) {
-                    Ok(turn) => turn,
-                    Err(why) => {
-                        sweep.not(&format!("{name}: {why}"));
-                        continue;
-                    }
-                };
-                for (station, ceilings) in stations.iter().zip(&ceilings) {
-                    if !is_fit(station, &case, directions) {
-                        progress.step();
-                        continue;
-                    }
-                    let of = (station, ceilings.as_ref());
-                    let as_chains =
-                        directions == own.0 && (resolution == own.1 || resolution == CHAINED);
-                    let setting = (&turn.maps, directions, as_chains);
-                    let (rows, why) = measured(of, &case, setting, options.runs);
-                    sweep.rows.extend(rows);
-                    if let Some(why) = why {
-                        let adapter = &station.adapter.gpu.name;
-                        sweep.not(&format!(
-                            "{name}: {directions} directions, {resolution} pixels: gpu@{adapter}: {why}"
-                        ));
-                    }
-                    progress.step();
+                Ok(case)
+            });
+            match asked {
+                Ok(case) if options.rival => sweep.contend(case, &stations, options.runs, progress),
+                Ok(case) if options.skips => {
+                    sweep.leave_out(case, &stations, options.runs, progress)
                 }
+                Ok(case) => sweep.vary(case, (&stations, &ceilings), options.runs, progress),
+                Err(why) => sweep.not(&format!("{name}: {why}")),
             }
         }
     }
@@ -119,18 +95,29 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
     Ok(sweep)
 }
 
-/// The rows of a setting, and why there are not all of them.
+/// A setting on an adapter.
 fn measured(
     of: (&Station<'_>, Option<&Ceilings>),
     case: &Case<'_>,
-    (maps, directions, as_chains): (&Maps, u32, bool),
+    (maps, directions): (&Maps, u32),
+    with: With,
     runs: u32,
-) -> (Vec<Row>, Option<String>) {
-    let rows = judge::made(of.0, case, maps, as_chains).and_then(|made| {
-        let rows = gpu::measure(of, case, (maps, directions), &made, runs)?;
-        Ok((rows, made.without_chains()))
-    });
-    rows.unwrap_or_else(|why| (Vec::new(), Some(why)))
+) -> Result<gpu::Measured, String> {
+    let made = judge::made(of.0, case, maps, with.chains)?;
+    gpu::measure(of, case, (maps, directions), (&made, with.picture), runs)
+}
+
+/// What is looked at beside frames.
+#[derive(Clone, Copy)]
+struct With {
+    chains: bool,
+    picture: bool,
+}
+
+/// Why a setting is not measured.
+fn at(name: &str, station: &Station<'_>, (directions, pixels): (u32, u32), why: &str) -> String {
+    let adapter = &station.adapter.gpu.name;
+    format!("{name}: {directions} directions, {pixels} pixels: gpu@{adapter}: {why}")
 }
 
 /// The scene's own directions and resolution, then one of them changed.
@@ -157,14 +144,91 @@ fn is_fit(station: &Station<'_>, case: &Case<'_>, directions: u32) -> bool {
 }
 
 impl Sweep {
-    /// Maps and horizons, over distances.
-    fn contend(
+    /// Maps over directions and resolutions.
+    fn vary(
         &mut self,
-        case: &mut Case<'_>,
+        mut case: Case<'_>,
+        (stations, ceilings): (&[Station<'_>], &[Option<Ceilings>]),
+        runs: u32,
+        progress: &Progress,
+    ) {
+        let name = case.name.clone();
+        let settings = settings(&case);
+        let steps = settings.len() * stations.len();
+        progress.begin(&name, u32::try_from(steps).unwrap_or(u32::MAX));
+        let own = settings[0];
+        for (directions, resolution) in settings {
+            let turn = match case.turn(directions, resolution) {
+                Ok(turn) => turn,
+                Err(why) => {
+                    self.not(&format!("{name}: {why}"));
+                    continue;
+                }
+            };
+            let is_chained = directions == own.0 && [own.1, CHAINED].contains(&resolution);
+            let with = With {
+                chains: is_chained,
+                picture: true,
+            };
+            for (station, ceilings) in stations.iter().zip(ceilings) {
+                if !is_fit(station, &case, directions) {
+                    progress.step();
+                    continue;
+                }
+                let of = (station, ceilings.as_ref());
+                match measured(of, &case, (&turn.maps, directions), with, runs) {
+                    Ok(measured) => {
+                        self.rows.extend(measured.rows);
+                        let is_first = !self.pictures.iter().any(|(of, _)| *of == name);
+                        let picture = measured.picture.filter(|_| is_first);
+                        self.pictures.extend(picture.map(|png| (name.clone(), png)));
+                        if let Some(why) = measured.missing {
+                            self.not(&at(&name, station, (directions, resolution), &why));
+                        }
+                    }
+                    Err(why) => self.not(&at(&name, station, (directions, resolution), &why)),
+                }
+                progress.step();
+            }
+        }
+    }
+
+    /// What the plan leaves out, with and without.
+    fn leave_out(
+        &mut self,
+        case: Case<'_>,
         stations: &[Station<'_>],
         runs: u32,
         progress: &Progress,
     ) {
+        progress.begin(
+            &case.name,
+            u32::try_from(stations.len()).unwrap_or(u32::MAX),
+        );
+        for station in stations {
+            if is_fit(station, &case, case.setup.directions) {
+                let skips = skips::measure(station, &case, runs);
+                match skips {
+                    Ok(skips) => self.skips.push(skips),
+                    Err(why) => {
+                        let adapter = &station.adapter.gpu.name;
+                        self.not(&format!("{}: gpu@{adapter}: {why}", case.name));
+                    }
+                }
+            }
+            progress.step();
+        }
+    }
+
+    /// Maps and horizons, over distances.
+    fn contend(
+        &mut self,
+        mut case: Case<'_>,
+        stations: &[Station<'_>],
+        runs: u32,
+        progress: &Progress,
+    ) {
+        let case = &mut case;
         let resolution = case.setup.resolution;
         let fars: Vec<_> = rival::fars(case).collect();
         progress.begin(&case.name, u32::try_from(fars.len()).expect("few"));
@@ -183,20 +247,25 @@ impl Sweep {
                 };
                 for station in stations.iter().filter(|s| is_fit(s, case, directions)) {
                     let of = (station, None);
-                    let (rows, why) = measured(of, case, (&turn.maps, directions, false), runs);
-                    let asked = rows.into_iter().filter_map(|row| row.asked);
-                    self.contests.extend(asked.map(|asked| Contest {
-                        scene: case.name.clone(),
-                        leg: format!("gpu@{}", station.adapter.gpu.name),
-                        far,
-                        technique: "maps",
-                        setting: format!("{directions} at {resolution}"),
-                        time: asked.frame,
-                        random: asked.random,
-                        noise: asked.noise,
-                    }));
-                    if let Some(why) = why {
-                        self.not(&format!("{}: maps: {why}", case.name));
+                    let with = With {
+                        chains: false,
+                        picture: false,
+                    };
+                    match measured(of, case, (&turn.maps, directions), with, runs) {
+                        Ok(measured) => {
+                            let asked = measured.rows.into_iter().filter_map(|row| row.asked);
+                            self.contests.extend(asked.map(|asked| Contest {
+                                scene: case.name.clone(),
+                                leg: format!("gpu@{}", station.adapter.gpu.name),
+                                far,
+                                technique: "maps",
+                                setting: format!("{directions} at {resolution}"),
+                                time: asked.frame,
+                                random: asked.random,
+                                noise: asked.noise,
+                            }));
+                        }
+                        Err(why) => self.not(&format!("{}: maps: {why}", case.name)),
                     }
                 }
             }

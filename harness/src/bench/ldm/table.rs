@@ -4,11 +4,12 @@ use super::super::csv::number;
 use super::super::table::{aligned, mebibytes, spread};
 use super::super::{Spread, WARM_UP, markdown};
 use super::case::SAMPLES;
+use super::flip::RAYS;
 use super::{Asked, Row, Sweep};
 use crate::text::{clean, markdown as text, quoted};
 
 /// Columns of the tables.
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 17] = [
     "scene",
     "leg",
     "layout",
@@ -25,10 +26,11 @@ const COLUMNS: [&str; 16] = [
     "memory",
     "RMSE, same",
     "RMSE, random",
+    "FLIP",
 ];
 
 /// Columns of the file of values; times are in milliseconds.
-const VALUES: [&str; 26] = [
+const VALUES: [&str; 28] = [
     "scene",
     "leg",
     "clock",
@@ -55,7 +57,13 @@ const VALUES: [&str; 26] = [
     "rmse_random",
     "largest_random",
     "noise",
+    "flip",
+    "flip_of_halves",
 ];
+
+fn flip([mean, halves]: [f64; 2]) -> String {
+    format!("{mean:.4} ({halves:.4})")
+}
 
 fn cells(row: &Row) -> [String; COLUMNS.len()] {
     let parts = row.parts.iter();
@@ -81,6 +89,7 @@ fn cells(row: &Row) -> [String; COLUMNS.len()] {
         mebibytes(row.memory[1]),
         asked(&|asked| format!("{:.2e}", asked.same[0])),
         asked(&|asked| format!("{:.2e} ({:.1e})", asked.random[0], asked.noise)),
+        asked(&|asked| asked.flip.map_or_else(String::new, flip)),
     ]
 }
 
@@ -108,6 +117,14 @@ pub fn page(sweep: &Sweep) -> String {
         sweep.stem()
     ));
     lines.push(String::new());
+    for (scene, _) in &sweep.pictures {
+        lines.push(format!(
+            "![{}: open by random rays, open by maps, FLIP between both]({})",
+            text(scene),
+            sweep.picture(scene)
+        ));
+        lines.push(String::new());
+    }
     lines.push(format!("| {} |", COLUMNS.join(" | ")));
     lines.push(format!(
         "|---|---|---|{}",
@@ -132,7 +149,10 @@ fn how(runs: u32) -> String {
          build, and of asking, which is arithmetic in the main. *Lists*: 4 bytes a pixel and 4 a key, of\nchains 8 a key; \
          *memory*: all that a frame works on, but receivers; chains have 32 bytes a pixel to sort by. *RMSE*: of what\nis \
          open, between 0 and 1, over some 2,000 receivers, from Embree's rays in the *same* directions, which is what \
-         the\nresolution costs, and from {SAMPLES} *random* ones, whose own noise is in parentheses. Lists are compared with \
+         the\nresolution costs, and from {SAMPLES} *random* ones, whose own noise is in parentheses. *FLIP*: how \
+         wrong\nthe picture of what is open looks, from 0 to 1 (mean, at 67 pixels a degree; greys by the sRGB transfer \
+         function), from one\nof {RAYS} random rays a pixel; in parentheses two pictures of half of these rays from each \
+         other. Of a large view, each kth\npixel along both axes, 200 of them at most, is the picture. Lists are compared with \
          the spec's,\nin as many maps as it draws in seconds, and sums with what it makes of the lists. A software driver \
          is measured where it\ntakes seconds, and left out elsewhere: up to 8 M pairs of a triangle and a map, 67 M of a receiver and a map."
     )
@@ -154,6 +174,7 @@ pub fn csv(sweep: &Sweep) -> String {
 fn values(row: &Row, runs: u32, (part, time): (&str, Spread)) -> [String; VALUES.len()] {
     let or_empty = |value: Option<f64>| value.map_or_else(String::new, number);
     let asked = |of: fn(&Asked) -> f64| or_empty(row.asked.as_ref().map(of));
+    let flip = |i: usize| or_empty(row.asked.as_ref().and_then(|asked| Some(asked.flip?[i])));
     [
         quoted(&row.scene).into_owned(),
         quoted(&row.leg).into_owned(),
@@ -181,5 +202,7 @@ fn values(row: &Row, runs: u32, (part, time): (&str, Spread)) -> [String; VALUES
         asked(|asked| asked.random[0]),
         asked(|asked| asked.random[1]),
         asked(|asked| asked.noise),
+        flip(0),
+        flip(1),
     ]
 }
