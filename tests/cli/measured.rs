@@ -113,14 +113,14 @@ fn maps_are_measured() {
         });
         number(own.expect("it is measured"), "rmse_same").expect("a number")
     };
-    let looks = |resolution: &str| {
-        let own = rows.iter().find(|row| row["resolution"] == resolution);
+    let looks = |directions: &str| {
+        let own = rows.iter().find(|row| row["directions"] == directions);
         number(own.expect("it is measured"), "flip").expect("a number")
     };
-    let [coarse, fine] = ["25", "400"].map(looks);
+    let [few, many] = ["16", "1024"].map(looks);
     assert!(
-        0.0 < fine && fine < coarse && coarse < 0.5,
-        "{fine} and {coarse}"
+        0.0 < many && many < few && few < 0.5,
+        "{few} and {many}: {csv}"
     );
     let png = fs::read_dir(place.root.join("t")).expect("a folder");
     let png = png.filter(|f| {

@@ -35,7 +35,7 @@ impl<'f> From<&'f TimedChains<'_>> for Frame<'f> {
 /// Milliseconds of the spans of a frame, in each round.
 pub(super) type Rounds = Vec<Vec<f64>>;
 
-/// Frames in turn, in rounds: what each took.
+/// Frames in turn, in rounds, of which every other one runs backwards: what each took.
 pub(super) fn rounds(
     station: &Station<'_>,
     frames: &[Frame<'_>],
@@ -49,13 +49,18 @@ pub(super) fn rounds(
     let timers: Vec<Timer> = frames.iter().map(timer).collect::<Result<_, _>>()?;
     let mut all = vec![Rounds::new(); frames.len()];
     for round in 0..WARM_UP + runs {
-        for ((frame, timer), rounds) in frames.iter().zip(&timers).zip(&mut all) {
+        let mut order: Vec<usize> = (0..frames.len()).collect();
+        if !round.is_multiple_of(2) {
+            order.reverse();
+        }
+        for at in order {
+            let (time, timer) = (&frames[at].time, &timers[at]);
             if gpu.info.device_type != wgpu::DeviceType::Cpu {
-                wake(|| (frame.time)(timer).map(drop))?;
+                wake(|| time(timer).map(drop))?;
             }
-            let seconds = (frame.time)(timer)?;
+            let seconds = time(timer)?;
             if round >= WARM_UP {
-                rounds.push(seconds.iter().map(|s| 1000.0 * s).collect());
+                all[at].push(seconds.iter().map(|s| 1000.0 * s).collect());
             }
         }
     }
