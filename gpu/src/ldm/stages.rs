@@ -139,7 +139,9 @@ impl<'g> Stages<'g> {
         // A list of n is sorted in at most n (log n + 3) steps, and looked at twice in each run.
         let keys = nodes.size() / 8;
         let steps = 4 * keys * (u64::from(keys.max(2).ilog2()) + 3);
-        for turn in (1..).take((1 + steps / u64::from(crate::grid::STEPS)) as usize) {
+        let mut turn = 0;
+        for _ in 0..=steps / u64::from(crate::grid::STEPS) {
+            turn += 1;
             let pass = self.device.each("chain_sort", told, &buffers)?;
             self.time += self.device.run(&[pass])?;
             if gpu.take(&self.device.unfinished)? == 0 {

@@ -23,6 +23,7 @@ mod judge;
 pub mod rival;
 mod rounds;
 mod run;
+mod scenes;
 pub mod skips;
 mod table;
 

@@ -11,8 +11,11 @@ use super::super::{Spread, WARM_UP};
 /// Something that is timed in spans.
 pub(super) struct Frame<'f> {
     spans: usize,
-    time: Box<dyn Fn(&Timer) -> Result<Vec<f64>, GpuError> + 'f>,
+    time: Box<Time<'f>>,
 }
+
+/// Runs a frame once: the seconds of its spans.
+type Time<'f> = dyn Fn(&Timer) -> Result<Vec<f64>, GpuError> + 'f;
 
 impl<'f> From<&'f Timed<'_>> for Frame<'f> {
     fn from(timed: &'f Timed<'_>) -> Self {
