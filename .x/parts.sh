@@ -12,13 +12,17 @@ chromium_sha256=18fe5404ce845594cd7d592fc07f37a19514079ba4d9c27192ad8b908743f16b
 # Where the dynamic linker finds a library of this machine's own word size.
 system_library() { ldconfig -p 2>/dev/null | sed -n "s/^[[:space:]]*$1 (libc6,.*=> //p" | head -n1; }
 
-links() { printf 'int main(void) { return 0; }' >"$tmp/a.c" && try cc -o "$tmp/a" "$tmp/a.c"; }
+links() {
+    printf '#include <vector>\nint main(void) { return 0; }' >"$tmp/a.cc"
+    printf 'int main(void) { return 0; }' >"$tmp/a.c" && try cc -o "$tmp/a" "$tmp/a.c" &&
+        try c++ -o "$tmp/a" "$tmp/a.cc"
+}
 setup_cc() {
-    have cc && links && return
-    if am_root && apt_update && try_apt install --no-install-recommends gcc libc6-dev && links; then
-        say "libc6-dev $(debian_version libc6-dev): installed (Debian), so that cc can link"
+    have cc && have c++ && links && return
+    if am_root && apt_update && try_apt install --no-install-recommends gcc g++ libc6-dev && links; then
+        say "libc6-dev $(debian_version libc6-dev): installed (Debian), so that cc and c++ can link"
     else
-        die "a C compiler that links is needed (Debian: gcc libc6-dev): $why"
+        die "compilers of C and C++ that link are needed (Debian: gcc g++ libc6-dev): $why"
     fi
 }
 

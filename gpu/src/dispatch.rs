@@ -18,8 +18,17 @@ pub(crate) struct Ready {
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     groups: u32,
-    /// What is set to zero before.
-    cleared: Option<wgpu::Buffer>,
+    /// What is set before.
+    set: Vec<Set>,
+}
+
+/// A buffer that is set before a pass.
+enum Set {
+    Zero(wgpu::Buffer),
+    As {
+        buffer: wgpu::Buffer,
+        pattern: wgpu::Buffer,
+    },
 }
 
 impl Ready {
@@ -39,23 +48,32 @@ impl Ready {
             group: kernel.bind(gpu, buffers),
             pipeline: pipeline.clone(),
             groups,
-            cleared: None,
+            set: Vec::new(),
         })
     }
 
     /// The same after a buffer has been set to zero.
-    pub(crate) fn after_clearing(self, buffer: wgpu::Buffer) -> Self {
-        Self {
-            cleared: Some(buffer),
-            ..self
-        }
+    pub(crate) fn after_clearing(mut self, buffer: wgpu::Buffer) -> Self {
+        self.set.push(Set::Zero(buffer));
+        self
+    }
+
+    /// The same after a buffer has been made like the beginning of another, which is no shorter.
+    pub(crate) fn after_copying(mut self, pattern: wgpu::Buffer, buffer: wgpu::Buffer) -> Self {
+        self.set.push(Set::As { buffer, pattern });
+        self
     }
 
     /// Records a pass of its own: what it writes is there for the next. Workgroups beyond what
     /// a row holds go to further rows, and may be more than were asked for.
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, writes: Option<Writes<'_>>) {
-        if let Some(buffer) = &self.cleared {
-            encoder.clear_buffer(buffer, 0, None);
+        for set in &self.set {
+            match set {
+                Set::Zero(buffer) => encoder.clear_buffer(buffer, 0, None),
+                Set::As { buffer, pattern } => {
+                    encoder.copy_buffer_to_buffer(pattern, 0, buffer, 0, buffer.size());
+                }
+            }
         }
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,

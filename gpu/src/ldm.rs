@@ -15,7 +15,7 @@ use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm;
 
 pub use stages::Stages;
-pub use timed::{Span, Timed};
+pub use timed::{ChainSpan, Question, Span, Timed, TimedChains};
 
 /// Maps of a workgroup that draws small triangles. Twin: `MAPS_AT_ONCE` in `cover.wgsl`.
 pub const MAPS_AT_ONCE: u32 = 8;

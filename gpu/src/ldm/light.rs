@@ -119,7 +119,7 @@ impl Stages<'_> {
 }
 
 /// The longest runs of numbers for all of which something holds.
-fn runs(numbers: Range<u32>, holds: impl Fn(u32) -> bool) -> Vec<Range<u32>> {
+pub(super) fn runs(numbers: Range<u32>, holds: impl Fn(u32) -> bool) -> Vec<Range<u32>> {
     let mut runs: Vec<Range<u32>> = Vec::new();
     for number in numbers.filter(|number| holds(*number)) {
         match runs.last_mut() {
@@ -173,6 +173,6 @@ fn count(receivers: &[Receiver]) -> u32 {
     u32::try_from(receivers.len()).expect("fewer than 2^32")
 }
 
-fn padded(sky: &Sky) -> [[f32; 4]; 2] {
+pub(super) fn padded(sky: &Sky) -> [[f32; 4]; 2] {
     sky.map(|[r, g, b]| [r, g, b, 0.0])
 }

@@ -22,6 +22,8 @@ pub struct Stages<'g> {
     pub(super) batches: Vec<Batch>,
     /// Time on the device of what ran last, without transfers.
     pub time: Duration,
+    /// Dispatches after which the last run of stage `chain` had put a batch in order, at most.
+    pub turns: u32,
 }
 
 impl<'g> Stages<'g> {
@@ -41,6 +43,7 @@ impl<'g> Stages<'g> {
             device: Device::new(gpu, kernels, maps, blockers, budget)?,
             batches: Vec::new(),
             time: Duration::ZERO,
+            turns: 0,
         })
     }
 
@@ -94,6 +97,7 @@ impl<'g> Stages<'g> {
         sound: impl Fn(&Chains, u32) -> bool,
     ) -> Result<Chains, GpuError> {
         self.time = Duration::ZERO;
+        self.turns = 0;
         let mut chains = Chains::default();
         for span in spans(self.device.all, self.device.room / PROGRESS) {
             let gpu = self.device.gpu;
@@ -135,10 +139,13 @@ impl<'g> Stages<'g> {
         // A list of n is sorted in at most n (log n + 3) steps, and looked at twice in each run.
         let keys = nodes.size() / 8;
         let steps = 4 * keys * (u64::from(keys.max(2).ilog2()) + 3);
+        let mut turn = 0;
         for _ in 0..=steps / u64::from(crate::grid::STEPS) {
+            turn += 1;
             let pass = self.device.each("chain_sort", told, &buffers)?;
             self.time += self.device.run(&[pass])?;
             if gpu.take(&self.device.unfinished)? == 0 {
+                self.turns = self.turns.max(turn);
                 return Ok(());
             }
         }
@@ -151,7 +158,7 @@ impl<'g> Stages<'g> {
 
 impl Chains {
     /// Those of further pixels, whose first entry has this address among all.
-    fn append(&mut self, other: Self, base: u32) {
+    pub(super) fn append(&mut self, other: Self, base: u32) {
         let moved = |at: u32| match at {
             EOL => EOL,
             _ => at.wrapping_add(base),

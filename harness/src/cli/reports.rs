@@ -29,7 +29,7 @@ pub fn bench() -> PathBuf {
 }
 
 /// Writes a file; its folder is made if absent.
-pub fn write(file: &Path, text: &str) -> anyhow::Result<()> {
+pub fn write(file: &Path, text: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let written = make_folder(file).and_then(|()| fs::write(file, text));
     written.with_context(|| cannot(file))
 }

@@ -1,10 +1,12 @@
 //! A scene with its references.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{Falloff, Open, Receiver, openness};
 
+use super::flip;
 use crate::embree::rays::{RayAnswers, RayScene};
 use crate::replay::ldm::{Asker, Setup, Turn, random, same};
 use crate::scene::Loaded;
@@ -30,8 +32,10 @@ pub(super) struct Case<'l> {
     pub(super) receivers: Vec<Receiver>,
     /// Receivers that are held against rays.
     pub(super) sample: Vec<usize>,
-    rays: RayScene,
+    pub(super) rays: RayScene,
     random: Vec<Reference>,
+    /// For people; made when it is first looked at.
+    picture: OnceLock<Result<flip::Reference, String>>,
     /// By number of directions.
     same: BTreeMap<u32, Vec<f64>>,
 }
@@ -45,8 +49,7 @@ pub(super) struct Off {
 }
 
 impl<'l> Case<'l> {
-    /// Sets a scene up, with each triangle cut into four so often, and asks Embree for what is open
-    /// in random directions.
+    /// Sets a scene up, with each triangle cut into four so often.
     ///
     /// # Errors
     /// One line for a scene beyond the limits of the spec; what Embree reports.
@@ -62,28 +65,31 @@ impl<'l> Case<'l> {
             return Err("nothing is seen".to_owned());
         }
         let rays = RayScene::new(&setup.blockers).map_err(|e| e.to_string())?;
-        let mut case = Self {
+        Ok(Self {
             name: name.to_owned(),
             loaded,
             random: Vec::new(),
+            picture: OnceLock::new(),
             same: BTreeMap::new(),
             rays,
             setup,
             receivers,
             sample,
-        };
-        case.ask()?;
-        Ok(case)
+        })
     }
 
-    /// What random rays say is open, with the falloff that is set.
-    fn ask(&mut self) -> Result<(), String> {
-        let seed = self.loaded.file.seed;
+    /// Asks Embree for what is open in random directions, with the falloff that is set.
+    ///
+    /// # Errors
+    /// What Embree reports.
+    pub(super) fn ask(&mut self) -> Result<(), String> {
+        let seed = self.seed();
         self.random = self.each(|asker| {
             let (open, variance) = random(&self.setup, asker, (seed, SAMPLES), &self.rays);
             Reference { open, variance }
         })?;
         self.same.clear();
+        self.picture = OnceLock::new();
         Ok(())
     }
 
@@ -94,6 +100,21 @@ impl<'l> Case<'l> {
     pub(super) fn fade(&mut self, falloff: Falloff) -> Result<(), String> {
         self.setup.falloff = falloff;
         self.ask()
+    }
+
+    /// What seeds everything that is random.
+    pub(super) fn seed(&self) -> u64 {
+        self.loaded.file.seed
+    }
+
+    /// What sums over maps in so many directions look like, beside the reference.
+    ///
+    /// # Errors
+    /// What Embree reports.
+    pub(super) fn look(&self, directions: u32, opened: &[Open]) -> Result<flip::Seen, String> {
+        let reference = self.picture.get_or_init(|| flip::Reference::new(self));
+        let reference = reference.as_ref().map_err(Clone::clone)?;
+        Ok(reference.seen(self, directions, opened))
     }
 
     /// Length of the diagonal of what blocks, in steps.
@@ -144,6 +165,21 @@ impl<'l> Case<'l> {
             self.same.insert(directions, open);
         }
         Ok(turn)
+    }
+
+    /// The scene's own maps as planned, and as if nobody's needs were known.
+    ///
+    /// # Errors
+    /// What the spec says of its limits.
+    pub(super) fn turns(&self) -> Result<[Turn; 2], String> {
+        let turn = |skip| self.setup.turn(self.loaded, 0, skip);
+        let turn = |skip| turn(skip).map_err(|e| e.to_string());
+        Ok([turn(true)?, turn(false)?])
+    }
+
+    /// Whether light comes from anywhere.
+    pub(super) fn has_sky(&self) -> bool {
+        self.loaded.sky.is_some()
     }
 
     /// How far sums over maps in so many directions are from both references.

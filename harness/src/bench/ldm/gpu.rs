@@ -1,115 +1,160 @@
-//! An adapter: checked once, then timed.
+//! An adapter is timed, on lists that were judged.
 
-use triptych_gpu::error::GpuError;
 use triptych_gpu::kernel::Kernels;
-use triptych_gpu::ldm::{Span, Stages, Timed};
-use triptych_gpu::timer::Timer;
-use triptych_spec::bound::{Bounded, Real};
-use triptych_spec::ldm::{Layers, Maps, Open, layers, neighbours, occlusion};
+use triptych_gpu::ldm::{ChainSpan, Question, Span, Timed, TimedChains};
+use triptych_spec::ldm::{Maps, Open};
 
 use super::super::counts::Work;
 use super::super::legs::Station;
-use super::super::warm::wake;
-use super::super::{Ceilings, Spread, WARM_UP};
-use super::Row;
+use super::super::{Ceilings, Spread};
 use super::case::Case;
+use super::judge::{Made, check_chains, check_sums, opened, words};
+use super::rounds::{Frame, Rounds, part, rounds, spread};
+use super::{Asked, Layout, Row};
 
-/// Pairs of a triangle and a map that the spec draws to compare lists, about.
-const DRAWN: usize = 1 << 22;
+/// What was measured of a setting.
+pub(super) struct Measured {
+    /// Lists as runs, and as the paper has them if they were made.
+    pub(super) rows: Vec<Row>,
+    /// What it looks like, as PNG.
+    pub(super) picture: Option<Vec<u8>>,
+    /// Why a row that was asked for is missing.
+    pub(super) missing: Option<String>,
+}
 
-/// Receivers at which sums are compared, at most.
-const SUMMED: usize = 64;
-
-/// Measures maps on one adapter.
+/// Measures maps on one adapter: lists as runs, and as the paper has them if they were made.
 ///
 /// # Errors
 /// What the device refuses; what is not the spec's, in words.
 pub(super) fn measure(
     (station, ceilings): (&Station<'_>, Option<&Ceilings>),
     case: &Case<'_>,
-    maps: &Maps,
-    directions: u32,
+    (maps, directions): (&Maps, u32),
+    (made, with_picture): (&Made, bool),
     runs: u32,
-) -> Result<Row, String> {
-    let words = |e: GpuError| e.to_string();
+) -> Result<Measured, String> {
+    let kernels = Kernels::trusted(made.native, |sources| sources);
     let gpu = &station.adapter.gpu;
-    let native = gpu.has_int64();
-    let checked = station.adapter.native.as_ref().filter(|_| native);
-    let checked = checked.unwrap_or(&station.adapter.kernels);
-    let blockers = &case.setup.blockers;
-    let mut stages = Stages::new(gpu, checked, maps, blockers, u64::MAX).map_err(words)?;
-    let made = stages.layers().map_err(words)?;
-    drop(stages);
-    check_lists(case, maps, &made)?;
-    let kernels = Kernels::trusted(native, |sources| sources);
-    let asking = (&case.receivers[..], case.setup.falloff);
-    let timed = Timed::new(gpu, &kernels, (maps, blockers), &made, asking).map_err(words)?;
-    let (frames, parts) = rounds(station, &timed, runs).map_err(words)?;
-    if timed.layers().map_err(words)? != made {
+    let of = (maps, &case.setup.blockers);
+    let asking = (&case.receivers[..], Question::Occlusion(case.setup.falloff));
+    let timed = Timed::new(gpu, &kernels, of, &made.layers, asking).map_err(words)?;
+    let chains = match &made.turns {
+        Some(Ok(turns)) => {
+            let chains = TimedChains::new(gpu, &kernels, of, &made.layers, *turns);
+            Some(chains.map_err(words)?)
+        }
+        _ => None,
+    };
+    let mut frames = vec![Frame::from(&timed)];
+    frames.extend(chains.as_ref().map(Frame::from));
+    let times = rounds(station, &frames, runs).map_err(words)?;
+    if timed.layers().map_err(words)? != made.layers {
         return Err("lists unlike those of the checked run".to_owned());
     }
-    let opened = timed.opened().map_err(words)?;
-    let opened: Vec<Open> = opened
-        .iter()
-        .map(|open| Open {
-            whole: open.whole,
-            part: Bounded::exact(f64::from(open.part)),
-        })
-        .collect();
-    check_sums(case, (maps, &made), &opened)?;
-    let off = case.off(directions, &opened);
-    let (pixels, keys) = (u64::from(maps.pixels), made.keys.len() as u64);
-    let bounds = ceilings.map(|ceilings| {
-        let build: f64 = parts[..4].iter().map(|part| part.median).sum();
-        let of = |work, milliseconds: f64| 1000.0 * ceilings.bound(work).1 / milliseconds;
-        [
-            of(of_build(case, maps, keys), build),
-            of(of_asking(case, maps, keys), parts[4].median),
-        ]
-    });
-    Ok(Row {
-        scene: case.name.clone(),
-        leg: format!("gpu@{}{}", gpu.name, if native { ", native" } else { "" }),
-        clock: station.clock_name(),
-        directions,
-        resolution: case.setup.resolution,
-        triangles: blockers.triangles.len() as u64,
-        receivers: case.receivers.len() as u64,
-        pixels,
-        keys,
-        frame: frames,
-        parts: Span::ALL.map(name).into_iter().zip(parts).collect(),
-        memory: [4 * (pixels + keys), timed.bytes],
-        of_bound: bounds,
-        same: off.same,
-        random: off.random,
-        noise: off.noise,
+    let opened = opened(&timed)?;
+    check_sums(case, (maps, &made.layers), &opened)?;
+    let of = Of {
+        station,
+        ceilings,
+        case,
+        maps,
+        made,
+    };
+    let mut row = of.runs(directions, &times[0], timed.bytes, &opened);
+    let looked = with_picture.then(|| case.look(directions, &opened));
+    let looked = looked.transpose()?;
+    if let (Some(asked), Some(looked)) = (&mut row.asked, &looked) {
+        asked.flip = Some(looked.flip);
+    }
+    let mut rows = vec![row];
+    if let Some(chains) = &chains {
+        check_chains(maps, &made.layers, chains.chains().map_err(words)?)?;
+        rows.push(of.chains(&rows[0], &times[1], chains.bytes));
+    }
+    Ok(Measured {
+        rows,
+        picture: looked.map(|looked| looked.png),
+        missing: made.without_chains(),
     })
 }
 
-/// Milliseconds of a frame and of its parts.
-fn rounds(
-    station: &Station<'_>,
-    timed: &Timed<'_>,
-    runs: u32,
-) -> Result<(Spread, [Spread; 5]), GpuError> {
-    let gpu = &station.adapter.gpu;
-    let timer = Timer::new(gpu, &station.clock, 5)?;
-    let mut parts = [const { Vec::new() }; 5];
-    let mut frames = Vec::new();
-    for round in 0..WARM_UP + runs {
-        if gpu.info.device_type != wgpu::DeviceType::Cpu {
-            wake(|| timed.time(&timer).map(drop))?;
-        }
-        let seconds = timed.time(&timer)?;
-        if round >= WARM_UP {
-            frames.push(1000.0 * seconds.iter().sum::<f64>());
-            for (part, seconds) in parts.iter_mut().zip(seconds) {
-                part.push(1000.0 * seconds);
-            }
+/// What a row is made of.
+struct Of<'m> {
+    station: &'m Station<'m>,
+    ceilings: Option<&'m Ceilings>,
+    case: &'m Case<'m>,
+    maps: &'m Maps,
+    made: &'m Made,
+}
+
+impl Of<'_> {
+    /// The row of lists as runs, and of what they were asked.
+    fn runs(&self, directions: u32, times: &Rounds, bytes: u64, opened: &[Open]) -> Row {
+        let (case, maps) = (self.case, self.maps);
+        let (pixels, keys) = (u64::from(maps.pixels), self.made.layers.keys.len() as u64);
+        let build = part(times, &Span::ALL[..4]);
+        let off = case.off(directions, opened);
+        let asked = Asked {
+            frame: part(times, &Span::ALL),
+            of_bound: self.of_bound(of_asking(case, maps, keys), part(times, &[Span::Ask])),
+            same: off.same,
+            random: off.random,
+            noise: off.noise,
+            flip: None,
+        };
+        Row {
+            scene: case.name.clone(),
+            leg: leg(self.station, self.made),
+            clock: self.station.clock_name(),
+            layout: Layout::Runs,
+            directions,
+            resolution: case.setup.resolution,
+            triangles: case.setup.blockers.triangles.len() as u64,
+            receivers: case.receivers.len() as u64,
+            pixels,
+            keys,
+            build,
+            parts: Span::ALL.map(|s| (name(s), part(times, &[s]))).into(),
+            memory: [4 * (pixels + keys), bytes],
+            of_bound: self.of_bound(of_build(case, maps, keys), build),
+            asked: Some(asked),
         }
     }
-    Ok((Spread::of(frames), parts.map(Spread::of)))
+
+    /// The row of the same lists as chains.
+    fn chains(&self, runs: &Row, times: &Rounds, bytes: u64) -> Row {
+        let build = spread(times, |spans| spans.iter().sum());
+        let span = |s: ChainSpan| (name_of(s), spread(times, |spans| spans[s as usize]));
+        Row {
+            layout: Layout::Chains,
+            build,
+            parts: ChainSpan::ALL.map(span).into(),
+            memory: [4 * runs.pixels + 8 * runs.keys, bytes],
+            of_bound: self.of_bound(of_chains(self.case, self.maps, runs.keys), build),
+            asked: None,
+            ..runs.clone()
+        }
+    }
+
+    /// The least time for something over what it took.
+    fn of_bound(&self, work: Work, time: Spread) -> Option<f64> {
+        let least = self.ceilings.map(|ceilings| ceilings.bound(work).1);
+        least.map(|least| 1000.0 * least / time.median)
+    }
+}
+
+/// A leg's name in tables.
+pub(super) fn leg(station: &Station<'_>, made: &Made) -> String {
+    let native = if made.native { ", native" } else { "" };
+    format!("gpu@{}{native}", station.adapter.gpu.name)
+}
+
+/// A part's name in tables.
+fn name_of(span: ChainSpan) -> &'static str {
+    match span {
+        ChainSpan::Link => "link",
+        ChainSpan::Sort => "sort",
+    }
 }
 
 /// A part's name in tables.
@@ -119,7 +164,7 @@ fn name(span: Span) -> &'static str {
         Span::Scan => "scan",
         Span::Fill => "fill",
         Span::Sort => "sort",
-        Span::Occlusion => "ask",
+        Span::Ask => "ask",
     }
 }
 
@@ -134,57 +179,21 @@ fn of_build(case: &Case<'_>, maps: &Maps, keys: u64) -> Work {
     }
 }
 
+/// What the paper's lists must move: corners are read once; heads are set, exchanged, and read and
+/// written by the sort; entries of two words are written once, and by the sort read and linked
+/// anew, once at least. Each takes an atomic for its address and one for its head.
+fn of_chains(case: &Case<'_>, maps: &Maps, keys: u64) -> Work {
+    let corners = 48 * case.setup.blockers.triangles.len() as u64;
+    Work {
+        bytes: corners + 4 * 3 * u64::from(maps.pixels) + 4 * 5 * keys,
+        atomics: 2 * keys,
+    }
+}
+
 /// What asking must move: lists and receivers are read once, sums written once.
 fn of_asking(case: &Case<'_>, maps: &Maps, keys: u64) -> Work {
     Work {
         bytes: 4 * (u64::from(maps.pixels) + keys) + 40 * case.receivers.len() as u64,
         atomics: 0,
     }
-}
-
-/// Refuses lists that are not the spec's, in some of the maps, evenly chosen.
-fn check_lists(case: &Case<'_>, maps: &Maps, made: &Layers) -> Result<(), String> {
-    let blockers = &case.setup.blockers;
-    let most = (DRAWN / blockers.triangles.len().max(1)).clamp(1, maps.maps.len());
-    for number in (0..maps.maps.len()).step_by(maps.maps.len().div_ceil(most)) {
-        let map = &maps.maps[number];
-        let pixels = map.size.width * map.size.height;
-        let mut alone = Maps {
-            maps: vec![map.clone()],
-            pixels,
-            ..maps.clone()
-        };
-        alone.maps[0].first = 0;
-        let must = layers(&alone, blockers).map_err(|e| e.to_string())?;
-        for pixel in 0..pixels {
-            if made.list(map.first + pixel) != must.list(pixel) {
-                return Err(format!("unlike the spec: pixel {pixel} of map {number}"));
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Refuses sums that are not what the spec makes of the lists, at some receivers, evenly chosen.
-fn check_sums(
-    case: &Case<'_>,
-    (maps, made): (&Maps, &Layers),
-    opened: &[Open],
-) -> Result<(), String> {
-    let stride = case.sample.len().div_ceil(SUMMED);
-    for at in case.sample.iter().step_by(stride) {
-        let receiver = &case.receivers[*at];
-        let hits = maps
-            .maps
-            .iter()
-            .map(|map| (map, neighbours(maps, map, made, receiver)));
-        let must = occlusion(hits, receiver.normal, case.setup.falloff);
-        let is = &opened[*at];
-        if must.whole != is.whole || !must.part.admits(is.part.value) {
-            return Err(format!(
-                "unlike the spec: {is:?} over receiver {at}, must be {must:?}"
-            ));
-        }
-    }
-    Ok(())
 }

@@ -2,25 +2,14 @@
 
 use std::path::PathBuf;
 
-use super::super::legs::{Station, stations};
+use super::super::legs::stations;
 use super::super::{Ceilings, Machine, Progress};
 use super::case::Case;
-use super::rival::{self, Contest};
-use super::{SCENES, Sweep, gpu};
+use super::{SCENES, Sweep};
 use crate::corpus::Entry;
 use crate::mesh::Intake;
 use crate::replay::gpu::Adapter;
 use crate::scene::{LoadError, Loaded, load_entry, load_text};
-
-/// Numbers of directions, at a scene's own resolution.
-pub const DIRECTIONS: [u32; 6] = [16, 64, 128, 256, 512, 1024];
-
-/// Resolutions, with a scene's own number of directions.
-pub const RESOLUTIONS: [u32; 5] = [25, 50, 100, 200, 400];
-
-/// Pairs of a triangle and a map, and of a receiver and a map, up to which a software driver is
-/// measured: some seconds.
-const OF_SOFTWARE: [u64; 2] = [1 << 23, 1 << 26];
 
 /// What is measured, and how.
 #[derive(Clone, Debug)]
@@ -31,6 +20,8 @@ pub struct Options {
     pub cuts: u32,
     /// Whether maps are held against horizons, at their own resolution, in place of sweeps.
     pub rival: bool,
+    /// Whether what the plan leaves out is measured, with and without, in place of sweeps.
+    pub skips: bool,
     /// Rounds that count, at least one.
     pub runs: u32,
     /// Today, year-month-day.
@@ -48,6 +39,8 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
         runs: options.runs,
         rows: Vec::new(),
         contests: Vec::new(),
+        skips: Vec::new(),
+        pictures: Vec::new(),
         remarks: Vec::new(),
     };
     let stations = stations(adapters, &mut sweep.remarks);
@@ -65,45 +58,20 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
                 0 => loaded.name.clone(),
                 _ => format!("{}, each triangle as {}", loaded.name, 4_u32.pow(cuts)),
             };
-            let mut case = match Case::new(&name, loaded, cuts) {
-                Ok(case) => case,
-                Err(why) => {
-                    sweep.not(&format!("{name}: {why}"));
-                    continue;
+            let case = Case::new(&name, loaded, cuts);
+            let asked = case.and_then(|mut case| {
+                if !options.skips {
+                    case.ask()?;
                 }
-            };
-            if options.rival {
-                sweep.contend(&mut case, &stations, options.runs, progress);
-                continue;
-            }
-            let settings = settings(&case);
-            let steps = settings.len() * stations.len();
-            progress.begin(&name, u32::try_from(steps).unwrap_or(u32::MAX));
-            for (directions, resolution) in settings {
-                let turn = match case.turn(directions, resolution) {
-                    Ok(turn) => turn,
-                    Err(why) => {
-                        sweep.not(&format!("{name}: {why}"));
-                        continue;
-                    }
-                };
-                for (station, ceilings) in stations.iter().zip(&ceilings) {
-                    if !is_fit(station, &case, directions) {
-                        progress.step();
-                        continue;
-                    }
-                    let of = (station, ceilings.as_ref());
-                    match gpu::measure(of, &case, &turn.maps, directions, options.runs) {
-                        Ok(row) => sweep.rows.push(row),
-                        Err(why) => {
-                            let adapter = &station.adapter.gpu.name;
-                            sweep.not(&format!(
-                                "{name}: {directions} directions, {resolution} pixels: gpu@{adapter}: {why}"
-                            ));
-                        }
-                    }
-                    progress.step();
+                Ok(case)
+            });
+            match asked {
+                Ok(case) if options.rival => sweep.contend(case, &stations, options.runs, progress),
+                Ok(case) if options.skips => {
+                    sweep.leave_out(case, &stations, options.runs, progress)
                 }
+                Ok(case) => sweep.vary(case, (&stations, &ceilings), options.runs, progress),
+                Err(why) => sweep.not(&format!("{name}: {why}")),
             }
         }
     }
@@ -111,81 +79,7 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
     Ok(sweep)
 }
 
-/// The scene's own directions and resolution, then one of them changed.
-fn settings(case: &Case<'_>) -> Vec<(u32, u32)> {
-    let own = (case.setup.directions, case.setup.resolution);
-    let mut all = vec![own];
-    let directions = DIRECTIONS.map(|directions| (directions, own.1));
-    let resolutions = RESOLUTIONS.map(|resolution| (own.0, resolution));
-    for setting in directions.into_iter().chain(resolutions) {
-        if !all.contains(&setting) {
-            all.push(setting);
-        }
-    }
-    all
-}
-
-/// Whether an adapter is no software driver, or there is little to do.
-fn is_fit(station: &Station<'_>, case: &Case<'_>, directions: u32) -> bool {
-    let maps = u64::from(directions);
-    let triangles = case.setup.blockers.triangles.len() as u64;
-    let receivers = case.receivers.len() as u64;
-    let is_little = triangles * maps <= OF_SOFTWARE[0] && receivers * maps <= OF_SOFTWARE[1];
-    station.adapter.gpu.info.device_type != wgpu::DeviceType::Cpu || is_little
-}
-
 impl Sweep {
-    /// Maps and horizons, over distances.
-    fn contend(
-        &mut self,
-        case: &mut Case<'_>,
-        stations: &[Station<'_>],
-        runs: u32,
-        progress: &Progress,
-    ) {
-        let resolution = case.setup.resolution;
-        let fars: Vec<_> = rival::fars(case).collect();
-        progress.begin(&case.name, u32::try_from(fars.len()).expect("few"));
-        for (far, falloff) in fars {
-            if let Err(why) = case.fade(falloff) {
-                self.not(&format!("{}: {why}", case.name));
-                continue;
-            }
-            for directions in rival::DIRECTIONS {
-                let turn = match case.turn(directions, resolution) {
-                    Ok(turn) => turn,
-                    Err(why) => {
-                        self.not(&format!("{}: {why}", case.name));
-                        continue;
-                    }
-                };
-                for station in stations.iter().filter(|s| is_fit(s, case, directions)) {
-                    let of = (station, None);
-                    match gpu::measure(of, case, &turn.maps, directions, runs) {
-                        Ok(row) => self.contests.push(Contest {
-                            scene: row.scene,
-                            leg: format!("gpu@{}", station.adapter.gpu.name),
-                            far,
-                            technique: "maps",
-                            setting: format!("{directions} at {resolution}"),
-                            time: row.frame,
-                            random: row.random,
-                            noise: row.noise,
-                        }),
-                        Err(why) => self.not(&format!("{}: maps: {why}", case.name)),
-                    }
-                }
-            }
-            for station in stations {
-                match rival::horizons(station, case, far, runs) {
-                    Ok(rows) => self.contests.extend(rows),
-                    Err(why) => self.not(&format!("{}: horizons: {why}", case.name)),
-                }
-            }
-            progress.step();
-        }
-    }
-
     /// The scenes that can be read.
     fn load(&mut self, options: &Options) -> Result<Vec<Loaded>, String> {
         let mut all = Vec::new();
@@ -214,7 +108,7 @@ impl Sweep {
         Ok(all)
     }
 
-    fn not(&mut self, why: &str) {
+    pub(super) fn not(&mut self, why: &str) {
         self.remarks.push(format!("not measured: {why}"));
     }
 }

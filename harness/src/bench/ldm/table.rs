@@ -2,20 +2,23 @@
 
 use super::super::csv::number;
 use super::super::table::{aligned, mebibytes, spread};
-use super::super::{WARM_UP, markdown};
+use super::super::{Spread, WARM_UP, markdown};
 use super::case::SAMPLES;
-use super::{Row, Sweep};
+use super::flip::RAYS;
+use super::{Asked, Row, Sweep};
 use crate::text::{clean, markdown as text, quoted};
 
 /// Columns of the tables.
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 17] = [
     "scene",
     "leg",
+    "layout",
     "directions",
     "resolution",
     "triangles",
     "keys",
     "keys a pixel",
+    "build, ms",
     "frame, ms",
     "parts, ms",
     "of bound",
@@ -23,13 +26,15 @@ const COLUMNS: [&str; 14] = [
     "memory",
     "RMSE, same",
     "RMSE, random",
+    "FLIP",
 ];
 
 /// Columns of the file of values; times are in milliseconds.
-const VALUES: [&str; 24] = [
+const VALUES: [&str; 28] = [
     "scene",
     "leg",
     "clock",
+    "layout",
     "directions",
     "resolution",
     "triangles",
@@ -41,6 +46,7 @@ const VALUES: [&str; 24] = [
     "time_ms",
     "time_ms_min",
     "time_ms_max",
+    "build_ms",
     "frame_ms",
     "lists_bytes",
     "memory_bytes",
@@ -51,28 +57,39 @@ const VALUES: [&str; 24] = [
     "rmse_random",
     "largest_random",
     "noise",
+    "flip",
+    "flip_of_halves",
 ];
+
+fn flip([mean, halves]: [f64; 2]) -> String {
+    format!("{mean:.4} ({halves:.4})")
+}
 
 fn cells(row: &Row) -> [String; COLUMNS.len()] {
     let parts = row.parts.iter();
     let parts = parts.map(|(name, time)| format!("{name} {:.3}", time.median));
+    let asked = |of: &dyn Fn(&Asked) -> String| row.asked.as_ref().map_or_else(String::new, of);
+    let build = row.of_bound.map(|part| format!("{:.0} %", 100.0 * part));
+    let ask = row.asked.as_ref().and_then(|asked| asked.of_bound);
+    let ask = ask.map(|part| format!("{:.1} %", 100.0 * part));
     [
         clean(&row.scene).into_owned(),
         clean(&row.leg).into_owned(),
+        row.layout.name().to_owned(),
         row.directions.to_string(),
         row.resolution.to_string(),
         row.triangles.to_string(),
         row.keys.to_string(),
         format!("{:.2}", row.keys as f64 / row.pixels.max(1) as f64),
-        spread(row.frame, 1.0, 3),
+        spread(row.build, 1.0, 3),
+        asked(&|asked| spread(asked.frame, 1.0, 3)),
         parts.collect::<Vec<_>>().join(", "),
-        row.of_bound.map_or_else(String::new, |[build, ask]| {
-            format!("{:.0} %, {:.1} %", 100.0 * build, 100.0 * ask)
-        }),
+        build.into_iter().chain(ask).collect::<Vec<_>>().join(", "),
         mebibytes(row.memory[0]),
         mebibytes(row.memory[1]),
-        format!("{:.2e}", row.same[0]),
-        format!("{:.2e} ({:.1e})", row.random[0], row.noise),
+        asked(&|asked| format!("{:.2e}", asked.same[0])),
+        asked(&|asked| format!("{:.2e} ({:.1e})", asked.random[0], asked.noise)),
+        asked(&|asked| asked.flip.map_or_else(String::new, flip)),
     ]
 }
 
@@ -80,7 +97,7 @@ fn cells(row: &Row) -> [String; COLUMNS.len()] {
 pub fn lines(sweep: &Sweep) -> Vec<String> {
     let mut table = vec![COLUMNS.map(str::to_owned)];
     table.extend(sweep.rows.iter().map(cells));
-    aligned(&table, 2).collect()
+    aligned(&table, 3).collect()
 }
 
 /// The page.
@@ -100,8 +117,19 @@ pub fn page(sweep: &Sweep) -> String {
         sweep.stem()
     ));
     lines.push(String::new());
+    for (scene, _) in &sweep.pictures {
+        lines.push(format!(
+            "![{}: open by random rays, open by maps, FLIP between both]({})",
+            text(scene),
+            sweep.picture(scene)
+        ));
+        lines.push(String::new());
+    }
     lines.push(format!("| {} |", COLUMNS.join(" | ")));
-    lines.push(format!("|---|---|{}", "---:|".repeat(COLUMNS.len() - 2)));
+    lines.push(format!(
+        "|---|---|---|{}",
+        "---:|".repeat(COLUMNS.len() - 3)
+    ));
     let row = |row: &Row| format!("| {} |", cells(row).map(|cell| text(&cell)).join(" | "));
     lines.extend(sweep.rows.iter().map(row));
     lines.push(String::new());
@@ -111,54 +139,70 @@ pub fn page(sweep: &Sweep) -> String {
 fn how(runs: u32) -> String {
     format!(
         "Medians of {runs} rounds after {WARM_UP} to warm up, with minimum and maximum. *Frame*: from corners on \
-         the lattice to\nwhat is open over each receiver, the sum of its *parts*: *count*, *scan*, *fill* and *sort* \
-         build the lists of all maps,\n*ask* looks into all of them for all receivers. *Resolution*: pixels of a map \
-         across the diagonal of what blocks; maps\nare cropped to where receivers are. *Keys a pixel*: the paper has 3.9 of \
-         a Sponza, 12.9 of a hairball. *Of bound*: the\nleast time for what must be moved, at the rates that the adapter was \
-         measured to copy or count with, over the median: of\nthe build, and of asking, which is arithmetic in the \
-         main. *Lists*: 4 bytes a pixel and 4 a key; *memory*: all that a frame\nworks on, but receivers. *RMSE*: of what is \
-         open, between 0 and 1, over some 2,000 receivers, from Embree's rays in the\n*same* directions, which is what the \
-         resolution costs, and from {SAMPLES} *random* ones, whose own noise is in parentheses.\nLists are compared with the \
-         spec's, in as many maps as it draws in seconds, and sums with what it makes of the lists.\nA software driver is measured where it takes seconds, and left out elsewhere: up to 8 M pairs of a triangle and a map, 67 M of a \
-         receiver and a map."
+         the lattice to\nwhat is open over each receiver, the sum of its *parts*. Lists as *runs*: *count*, *scan*, \
+         *fill* and *sort* build those of all\nmaps, *ask* looks into all of them for all receivers. As the paper's \
+         *chains*: *link* sets heads and counter and links\nevery key, *sort* links each list anew, in order. Chains \
+         are the same lists as the runs, entry by entry, and built alone:\nasking looks for a key by halves of a run, and \
+         a chain has none. *Resolution*: pixels of a map across the diagonal of\nwhat blocks; maps are cropped to where \
+         receivers are. *Keys a pixel*: the paper has 3.9 of a Sponza, 12.9 of a hairball.\n*Of bound*: the least time for \
+         what must be moved, at the rates that the adapter was measured to copy or count with,\nover the median: of the \
+         build, and of asking, which is arithmetic in the main. *Lists*: 4 bytes a pixel and 4 a key, of\nchains 8 a key; \
+         *memory*: all that a frame works on, but receivers; chains have 32 bytes a pixel to sort by. *RMSE*: of what\nis \
+         open, between 0 and 1, over some 2,000 receivers, from Embree's rays in the *same* directions, which is what \
+         the\nresolution costs, and from {SAMPLES} *random* ones, whose own noise is in parentheses. *FLIP*: how \
+         wrong\nthe picture of what is open looks, from 0 to 1 (mean, at 67 pixels a degree; greys by the sRGB transfer \
+         function), from one\nof {RAYS} random rays a pixel; in parentheses two pictures of half of these rays from each \
+         other. Of a large view, each kth\npixel along both axes, 200 of them at most, is the picture. Lists are compared with \
+         the spec's,\nin as many maps as it draws in seconds, and sums with what it makes of the lists. A software driver \
+         is measured where it\ntakes seconds, and left out elsewhere: up to 8 M pairs of a triangle and a map, 67 M of a receiver and a map."
     )
 }
 
-/// The whole file of values: a line for each part of each row, and one for its frame.
+/// The whole file of values: a line for each part of each row, for its build, and for its frame.
 pub fn csv(sweep: &Sweep) -> String {
     let mut text = VALUES.join(",") + "\n";
     for row in &sweep.rows {
-        let bound = |i: usize| row.of_bound.map_or_else(String::new, |b| number(b[i]));
-        let whole = [("frame", row.frame)];
-        for (part, time) in whole.iter().chain(&row.parts) {
-            let values = [
-                quoted(&row.scene).into_owned(),
-                quoted(&row.leg).into_owned(),
-                row.clock.to_owned(),
-                row.directions.to_string(),
-                row.resolution.to_string(),
-                row.triangles.to_string(),
-                row.receivers.to_string(),
-                row.pixels.to_string(),
-                row.keys.to_string(),
-                sweep.runs.to_string(),
-                (*part).to_owned(),
-                number(time.median),
-                number(time.min),
-                number(time.max),
-                number(row.frame.median),
-                row.memory[0].to_string(),
-                row.memory[1].to_string(),
-                bound(0),
-                bound(1),
-                number(row.same[0]),
-                number(row.same[1]),
-                number(row.random[0]),
-                number(row.random[1]),
-                number(row.noise),
-            ];
-            text += &(values.join(",") + "\n");
+        let frame = row.asked.as_ref().map(|asked| ("frame", asked.frame));
+        let wholes = frame.into_iter().chain([("build", row.build)]);
+        for (part, time) in wholes.chain(row.parts.iter().copied()) {
+            text += &(values(row, sweep.runs, (part, time)).join(",") + "\n");
         }
     }
     text
+}
+
+fn values(row: &Row, runs: u32, (part, time): (&str, Spread)) -> [String; VALUES.len()] {
+    let or_empty = |value: Option<f64>| value.map_or_else(String::new, number);
+    let asked = |of: fn(&Asked) -> f64| or_empty(row.asked.as_ref().map(of));
+    let flip = |i: usize| or_empty(row.asked.as_ref().and_then(|asked| Some(asked.flip?[i])));
+    [
+        quoted(&row.scene).into_owned(),
+        quoted(&row.leg).into_owned(),
+        row.clock.to_owned(),
+        row.layout.name().to_owned(),
+        row.directions.to_string(),
+        row.resolution.to_string(),
+        row.triangles.to_string(),
+        row.receivers.to_string(),
+        row.pixels.to_string(),
+        row.keys.to_string(),
+        runs.to_string(),
+        part.to_owned(),
+        number(time.median),
+        number(time.min),
+        number(time.max),
+        number(row.build.median),
+        asked(|asked| asked.frame.median),
+        row.memory[0].to_string(),
+        row.memory[1].to_string(),
+        or_empty(row.of_bound),
+        or_empty(row.asked.as_ref().and_then(|asked| asked.of_bound)),
+        asked(|asked| asked.same[0]),
+        asked(|asked| asked.same[1]),
+        asked(|asked| asked.random[0]),
+        asked(|asked| asked.random[1]),
+        asked(|asked| asked.noise),
+        flip(0),
+        flip(1),
+    ]
 }

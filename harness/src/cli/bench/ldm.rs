@@ -12,7 +12,7 @@ use super::super::scenes::Scenes;
 use super::super::{Verdict, reports};
 use super::{Start, start};
 use crate::bench::Progress;
-use crate::bench::ldm::{Options, csv, lines, page, rival, run as measure, svg};
+use crate::bench::ldm::{Options, csv, lines, page, rival, run as measure, skips, svg};
 use crate::text::clean;
 
 #[derive(clap::Args)]
@@ -21,6 +21,7 @@ use crate::text::clean;
     triptych bench ldm --cuts 1               and every triangle cut into four\n  \
     triptych bench ldm ldm/bunny --adapter llvmpipe --runs 3\n  \
     triptych bench ldm --rival                maps against horizons of the view, at equal time\n  \
+    triptych bench ldm --skips                what is left out, in time\n  \
     triptych bench ldm --stress               what holds at the extremes\n\n\
     Exit code 0 whatever is measured: a benchmark judges no machine. 2: nothing could be measured.")]
 #[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, or scene files with an [ldm]; without one a Sponza and a ball of fur")))]
@@ -41,6 +42,9 @@ pub struct Args {
     /// Hold maps against horizon-based ambient occlusion in screen space, over distances
     #[arg(long, conflicts_with = "cuts")]
     rival: bool,
+    /// Measure what the plan leaves out, with and without: directions, what is cropped, lists of one
+    #[arg(long, conflicts_with_all = ["cuts", "rival"])]
+    skips: bool,
     /// Where Markdown, CSV and the front go [default: reports/out/bench]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -68,16 +72,17 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         scenes,
         cuts: args.cuts,
         rival: args.rival,
+        skips: args.skips,
         runs: args.runs.get(),
         date: today(),
     };
     let sweep = measure(&adapters, &options, &Progress::new());
     let sweep = sweep.map_err(anyhow::Error::msg)?;
     let mut out = stdout();
-    let shown = if args.rival {
-        rival::lines(&sweep)
-    } else {
-        lines(&sweep)
+    let shown = match () {
+        () if args.rival => rival::lines(&sweep),
+        () if args.skips => skips::lines(&sweep),
+        () => lines(&sweep),
     };
     for line in shown {
         writeln!(out, "{}", line.trim_end())?;
@@ -86,12 +91,13 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         writeln!(out, "{}", clean(remark))?;
     }
     anyhow::ensure!(
-        !(sweep.rows.is_empty() && sweep.contests.is_empty()),
+        !(sweep.rows.is_empty() && sweep.contests.is_empty() && sweep.skips.is_empty()),
         "nothing was measured; see what was not, and why"
     );
-    let files = match args.rival {
-        true => vec![("csv", rival::csv(&sweep)), ("md", rival::page(&sweep))],
-        false => vec![
+    let files = match () {
+        () if args.rival => vec![("csv", rival::csv(&sweep)), ("md", rival::page(&sweep))],
+        () if args.skips => vec![("csv", skips::csv(&sweep)), ("md", skips::page(&sweep))],
+        () => vec![
             ("csv", csv(&sweep)),
             ("svg", svg(&sweep)),
             ("md", page(&sweep)),
@@ -99,6 +105,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     };
     for (end, text) in files {
         reports::write(&folder.join(format!("{}.{end}", sweep.stem())), &text)?;
+    }
+    for (scene, png) in &sweep.pictures {
+        reports::write(&folder.join(sweep.picture(scene)), png)?;
     }
     writeln!(out, "Results: {}", folder.display())?;
     Ok(Verdict::Agree)

@@ -165,7 +165,7 @@ impl Setup {
 
     /// Maps of what blocks. With `skip`, as far as somebody asks, or may by the points of a device
     /// ([`Gbuffer::stray`]).
-    fn maps(&self, directions: &[[f64; 3]], skip: bool) -> Result<Maps, String> {
+    pub(crate) fn maps(&self, directions: &[[f64; 3]], skip: bool) -> Result<Maps, String> {
         let corners = self.blockers.triangles.iter().flatten();
         let corners = corners.map(|row| self.blockers.vertices[*row as usize]);
         let blockers = bounds(corners).unwrap_or([[0; 3]; 2]);
