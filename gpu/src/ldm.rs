@@ -14,6 +14,7 @@ use bytemuck::{Pod, Zeroable};
 use triptych_spec::grid::lattice::Point;
 use triptych_spec::ldm;
 
+pub use light::irradiance;
 pub use stages::Stages;
 pub use timed::{ChainSpan, Question, Span, Timed, TimedChains};
 

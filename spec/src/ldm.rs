@@ -40,7 +40,7 @@ pub use environment::{Sky, environment};
 pub use layers::{KEYS_MAX, Layers, layers};
 pub use map::{KEYS_PER_STEP, Map, Maps, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN};
 pub use neighbours::{Hits, OFF_MAX, Receiver, neighbours, own_band};
-pub use occlusion::{Falloff, Open, WEIGHT_BITS, occlusion, openness, weight};
+pub use occlusion::{FAR_MAX, Falloff, Open, WEIGHT_BITS, occlusion, openness, weight};
 pub use rotation::{Rotation, rotated};
 
 use thiserror::Error;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use triptych_spec::ldm::{Falloff, Hits, KEYS_PER_STEP, Receiver, Sky, WEIGHT_BITS};
+use triptych_spec::ldm::{FAR_MAX, Falloff, Hits, KEYS_PER_STEP, Receiver, Sky, WEIGHT_BITS};
 
 use super::lists::Batch;
 use super::stages::Stages;
@@ -44,14 +44,30 @@ impl Stages<'_> {
     }
 
     /// Stage `occlusion`, of all maps.
+    ///
+    /// # Panics
+    /// If the falloff's distance is beyond its limits.
     pub fn occlusion(
         &mut self,
         receivers: &[Receiver],
         falloff: Falloff,
     ) -> Result<Vec<Open>, GpuError> {
+        let nothing = vec![Open::default(); receivers.len()];
+        self.occlusion_onto(&nothing, receivers, falloff)
+    }
+
+    /// The same, added to what was open `before` in the maps of other rotations.
+    ///
+    /// # Panics
+    /// As [`Self::occlusion`].
+    pub fn occlusion_onto(
+        &mut self,
+        before: &[Open],
+        receivers: &[Receiver],
+        falloff: Falloff,
+    ) -> Result<Vec<Open>, GpuError> {
         let own = self.upload(receivers)?;
-        let sums = vec![Open::default(); receivers.len()];
-        let sums = self.device.gpu.upload("what is open", &sums)?;
+        let sums = self.device.gpu.upload("what is open", before)?;
         self.time = Duration::ZERO;
         let told = fading(self.device.told, falloff);
         self.ask(
@@ -71,11 +87,24 @@ impl Stages<'_> {
         (skies, lit): (&[Sky], &[bool]),
         directions: u32,
     ) -> Result<Vec<[f32; 3]>, GpuError> {
+        let nothing = vec![[0.0; 4]; receivers.len()];
+        let sums = self.environment_onto(&nothing, receivers, (skies, lit))?;
+        Ok(irradiance(&sums, directions))
+    }
+
+    /// The sum over these maps, added to that `before` of other rotations; the fourth number is not
+    /// used. [`irradiance`] makes light of it.
+    pub fn environment_onto(
+        &mut self,
+        before: &[[f32; 4]],
+        receivers: &[Receiver],
+        (skies, lit): (&[Sky], &[bool]),
+    ) -> Result<Vec<[f32; 4]>, GpuError> {
         let gpu = self.device.gpu;
         let own = self.upload(receivers)?;
         let skies: Vec<[[f32; 4]; 2]> = skies.iter().map(padded).collect();
         let skies = gpu.upload("skies of maps", &skies)?;
-        let light = gpu.upload("light", &vec![[0.0_f32; 4]; receivers.len()])?;
+        let light = gpu.upload("light", before)?;
         self.time = Duration::ZERO;
         let named = [("receivers", &own), ("skies", &skies), ("light", &light)];
         let is_lit = |map: u32| lit.get(map as usize).copied().unwrap_or(false);
@@ -85,11 +114,7 @@ impl Stages<'_> {
             count(receivers),
             &named,
         )?;
-        let light: Vec<[f32; 4]> = gpu.read(&light, receivers.len())?;
-        // Kernels sum up; what is common to all terms comes last, in f32 like the rest.
-        let scale = 2.0 / directions as f32 / (1_u32 << WEIGHT_BITS) as f32;
-        let scaled = |[r, g, b, _]: [f32; 4]| [r * scale, g * scale, b * scale];
-        Ok(light.into_iter().map(scaled).collect())
+        gpu.read(&light, receivers.len())
     }
 
     fn upload(&self, receivers: &[Receiver]) -> Result<wgpu::Buffer, GpuError> {
@@ -116,6 +141,14 @@ impl Stages<'_> {
         }
         Ok(())
     }
+}
+
+/// Irradiance over pi, of sums over maps in so many directions, of all rotations. Kernels sum up;
+/// what is common to all terms comes last, in `f32` like the rest.
+pub fn irradiance(sums: &[[f32; 4]], directions: u32) -> Vec<[f32; 3]> {
+    let scale = 2.0 / directions as f32 / (1_u32 << WEIGHT_BITS) as f32;
+    let scaled = |[r, g, b, _]: &[f32; 4]| [r * scale, g * scale, b * scale];
+    sums.iter().map(scaled).collect()
 }
 
 /// The longest runs of numbers for all of which something holds.
@@ -154,12 +187,15 @@ pub(super) fn asking(
 }
 
 /// What a distance does, in keys.
+///
+/// # Panics
+/// If it is 0 or beyond [`FAR_MAX`].
 pub(super) fn fading(told: Told, falloff: Falloff) -> Told {
     let (most, power) = match falloff {
         Falloff::None => (0, 0),
-        // No two keys are farther apart than 2^28.
         Falloff::Distance { most, power } => {
-            (most.saturating_mul(KEYS_PER_STEP.unsigned_abs()), power)
+            assert!((1..=FAR_MAX).contains(&most), "{most} steps of a falloff");
+            (most * KEYS_PER_STEP.unsigned_abs(), power)
         }
     };
     Told {

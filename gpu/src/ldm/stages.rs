@@ -15,6 +15,9 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
 
+/// Bytes of an entry of a linked list.
+const LINK: u64 = 8;
+
 /// Maps in the making. Stages are called in order; each takes what was given in its place, or
 /// what the one before made.
 pub struct Stages<'g> {
@@ -27,8 +30,8 @@ pub struct Stages<'g> {
 }
 
 impl<'g> Stages<'g> {
-    /// Uploads maps and triangles. No buffer takes more than `budget` bytes: maps are then made in
-    /// several batches. They are, too, where the adapter binds no more.
+    /// Uploads maps and triangles. No buffer of lists takes more than `budget` bytes: maps are then
+    /// made in several batches. They are, too, where the adapter binds no more.
     ///
     /// # Errors
     /// Limits by name, and whatever the device reports; so for all stages.
@@ -99,20 +102,38 @@ impl<'g> Stages<'g> {
         self.time = Duration::ZERO;
         self.turns = 0;
         let mut chains = Chains::default();
-        for span in spans(self.device.all, self.device.room / PROGRESS) {
+        let room = u32::try_from(self.device.room / LINK).unwrap_or(u32::MAX);
+        let mut spans = spans(self.device.all, self.device.room / PROGRESS);
+        spans.reverse();
+        while let Some(span) = spans.pop() {
             let gpu = self.device.gpu;
             // As if all batches had one pool: what attempts have used up is gone.
             let base = u64::from(capacity).min(chains.attempts);
             let base = u32::try_from(base).expect("at most the capacity");
-            let left = capacity - base;
+            let all = capacity - base;
+            let left = all.min(room);
             let heads = gpu.filled("heads", span.len(), EOL)?;
-            let nodes = gpu.storage("entries of lists", 8 * u64::from(left))?;
+            let nodes = gpu.storage("entries of lists", LINK * u64::from(left))?;
             let counter = gpu.storage("counter", 4)?;
             let buffers = [("heads", &heads), ("nodes", &nodes), ("counter", &counter)];
             let kernels = ["chain", "chain_large"];
             let drawn = self.device.draw(kernels, (&span, left), &buffers)?;
             self.time += self.device.run(&drawn)?;
             let attempts = gpu.word(&counter, 0)?;
+            if attempts > left && left < all {
+                // There is room, but no buffer holds as much.
+                let halves = span.halves(self.device.all);
+                let Some([first, second]) = halves else {
+                    return Err(GpuError::Limit {
+                        adapter: gpu.name.clone(),
+                        what: "entries of a map's lists",
+                        needed: LINK * u64::from(attempts),
+                        limit: self.device.room,
+                    });
+                };
+                spans.extend([second, first]);
+                continue;
+            }
             let stored = attempts.min(left) as usize;
             let read = || -> Result<Chains, GpuError> {
                 Ok(Chains {
@@ -137,7 +158,7 @@ impl<'g> Stages<'g> {
         let progress = gpu.storage("progress of pixels", PROGRESS * u64::from(told.pixels))?;
         let buffers = [("heads", heads), ("nodes", nodes), ("progress", &progress)];
         // A list of n is sorted in at most n (log n + 3) steps, and looked at twice in each run.
-        let keys = nodes.size() / 8;
+        let keys = nodes.size() / LINK;
         let steps = 4 * keys * (u64::from(keys.max(2).ilog2()) + 3);
         let mut turn = 0;
         for _ in 0..=steps / u64::from(crate::grid::STEPS) {

@@ -40,7 +40,7 @@ pub struct TurnArrays<'a> {
     pub offsets: &'a [u32],
     /// Keys.
     pub keys: &'a [u32],
-    /// What is open as a whole, of each receiver.
+    /// What is open as a whole, of each receiver: the sum of this rotation and all before it.
     pub whole: &'a [u32],
     /// What a receiver finds in each map, if that is written: too much to hold for all of them.
     pub hits: Option<&'a dyn Fn(usize) -> Vec<Hits>>,

@@ -130,8 +130,11 @@ impl Run<'_> {
             openness: &openness,
             picture: picture.as_deref(),
         })?;
+        let mut whole = vec![0; receivers.len()];
         for (number, turn) in (1..).zip(turns) {
-            let whole: Vec<u32> = turn.open.iter().map(|open| open.whole).collect();
+            for (sum, open) in whole.iter_mut().zip(&turn.open) {
+                *sum += open.whole;
+            }
             leg.turn(
                 number,
                 &TurnArrays {

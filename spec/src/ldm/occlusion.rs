@@ -6,6 +6,10 @@ use super::{Hits, Map};
 use crate::bound::{Bounded, Real, Sum};
 use crate::grid::lattice::Point;
 
+/// Longest distance of a falloff: in keys it has 32 bits. It is 32 times as long as a side of the
+/// lattice, across which a hit would let `1 / 32` pass.
+pub const FAR_MAX: u32 = u32::MAX / KEYS_PER_STEP.unsigned_abs();
+
 /// Bits of the weight of a direction straight ahead.
 pub const WEIGHT_BITS: u32 = 19;
 
@@ -17,7 +21,7 @@ pub enum Falloff {
     /// Ambient obscurance: a hit at a distance lets `(distance / most)^power` pass, and all of
     /// it from `most` on, in steps of the lattice; power 0 is occlusion up to `most`.
     Distance {
-        /// From which on nothing blocks, at least 1.
+        /// From which on nothing blocks, 1 to [`FAR_MAX`].
         most: u32,
         /// 0 to 8.
         power: u32,

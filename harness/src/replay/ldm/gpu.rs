@@ -23,15 +23,16 @@ const TRACES: usize = 1 << 22;
 /// One GPU leg of one scene.
 pub type LdmLeg<'a> = Leg<'a, LdmRun>;
 
-/// What a device made of a rotation, from its own points and lists.
+/// What a device made of a rotation and of those before it, from its own points and lists.
 #[derive(Clone, Debug, Default)]
 pub struct Made {
     /// Its lists.
     pub layers: Layers,
-    /// What is open over each receiver.
+    /// What is open over each receiver, all rotations up to this one together.
     pub open: Vec<Open>,
-    /// Irradiance over pi of each receiver; nothing without a sky.
-    pub light: Vec<[f32; 3]>,
+    /// The light of each receiver, likewise, before [`irradiance`](triptych_gpu::ldm::irradiance);
+    /// nothing without a sky.
+    pub light: Vec<[f32; 4]>,
 }
 
 impl LdmLeg<'_> {

@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::{Lattice, Point};
-use triptych_spec::ldm::{self, Falloff, Maps, OFF_MAX, Receiver, directions, rotated, weight};
+use triptych_spec::ldm::{
+    self, FAR_MAX, Falloff, Maps, OFF_MAX, Receiver, directions, rotated, weight,
+};
 use triptych_spec::raster::count;
 use triptych_spec::rsm::{
     Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, Surface, View, gbuffer,
@@ -15,9 +17,6 @@ use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 use crate::replay::placed;
 use crate::replay::spec::FRAGMENTS_MAX;
 use crate::scene::{Loaded, Mistake};
-
-/// From here on a distance is longer than the lattice's diagonal, and all are alike.
-const FAR_MAX: u64 = 1 << 25;
 
 /// What all rotations share.
 pub struct Setup {
@@ -228,18 +227,24 @@ fn receivers(model: &Model, seen: &[Option<Surface>], off: impl Fn(usize) -> u32
 
 /// The falloff, in steps.
 fn far_in_steps(lattice: &Lattice, far: f64, power: u32) -> Result<Falloff, Mistake> {
-    match placed::steps(lattice, far).min(FAR_MAX) {
-        0 => {
+    let steps = placed::steps(lattice, far);
+    match u32::try_from(steps).ok().filter(|steps| *steps <= FAR_MAX) {
+        Some(0) => {
             let least = libm::scalbn(0.5, lattice.exponent);
             let message = format!(
                 "{far:e} is less than half a step of the lattice; {least:.3e} or more is right"
             );
             Err(Mistake::of("ldm.far", message))
         }
-        most => Ok(Falloff::Distance {
-            most: u32::try_from(most).expect("at most 2^25"),
-            power,
-        }),
+        Some(most) => Ok(Falloff::Distance { most, power }),
+        None => {
+            let most = libm::scalbn(f64::from(FAR_MAX), lattice.exponent);
+            let message = format!(
+                "{far:e} is more than {FAR_MAX} steps of the lattice, {most:.3e}; leave it out where \
+                 whatever is hit shall block"
+            );
+            Err(Mistake::of("ldm.far", message))
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use triptych_spec::ldm::{Falloff, openness};
+use triptych_spec::ldm::{FAR_MAX, Falloff, openness};
 
 use super::*;
 use crate::corpus::Entry;
@@ -53,15 +53,18 @@ fn lengths_are_steps() {
         panic!("far is stated");
     };
     assert_eq!((f64::from(most), power), (0.5 * unit, 3));
-    let all = scene("far = 1e300", "");
-    let far = Setup::new(&all).expect("a lattice").falloff;
-    assert_eq!(
-        far,
-        Falloff::Distance {
-            most: 1 << 25,
-            power: 2
-        }
+    let long = |far: f64| scene(&format!("far = {far:e}"), "");
+    let longest = f64::from(FAR_MAX) / unit;
+    let far = Setup::new(&long(longest)).expect("a lattice").falloff;
+    assert!(
+        matches!(far, Falloff::Distance { most: FAR_MAX, .. }),
+        "{far:?}"
     );
+    for far in [longest + 1.0, 1e300] {
+        let refused = refused(&long(far));
+        assert_eq!(refused.key, Some("ldm.far"));
+        assert!(refused.message.contains("leave it out"), "{refused}");
+    }
     let none = Setup::new(&scene("", "")).expect("a lattice");
     assert_eq!(none.falloff, Falloff::None);
     let short = refused(&scene("far = 1e-9", ""));

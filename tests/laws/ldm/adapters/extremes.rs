@@ -58,6 +58,36 @@ fn chains_in_parts() {
     check.unwrap();
 }
 
+/// Deep lists: pixels of all maps fit in a buffer, and entries of one map alone.
+#[test]
+fn chains_map_by_map() {
+    let mut mesh = empty();
+    for i in 0..60 {
+        quad(&mut mesh, [-9000, -9000], [9000, 9000], i * 7919 % 8192);
+    }
+    let sets = [[0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.6, 0.0, 0.8]];
+    let maps = maps_around(&mesh, &sets, 8);
+    let made = layers(&maps, &mesh).unwrap();
+    let keys = maps.maps.iter().map(|map| {
+        let end = map.first + map.size.width * map.size.height;
+        made.offsets[end as usize] - made.offsets[map.first as usize]
+    });
+    let most = u64::from(keys.max().unwrap());
+    assert!(8 * most > 32 * u64::from(maps.pixels), "{most}");
+    let check = everywhere((&maps, &mesh), 8 * most, |stages, name| {
+        lists_agree(stages, &maps, &made, name)
+    });
+    check.unwrap();
+    let total = u32::try_from(made.keys.len()).unwrap();
+    let check = everywhere((&maps, &mesh), 8 * most - 1, |stages, name| {
+        let refused = stages.chain(total, |_, _| true).map(|_| ());
+        let words = refused.expect_err("a map's entries").to_string();
+        prop_assert!(words.contains("entries of a map's lists"), "{}: {}", name, words);
+        Ok(())
+    });
+    check.unwrap();
+}
+
 /// The finest maps, with more large triangles than a workgroup has.
 #[test]
 fn large_triangles() {

@@ -6,11 +6,12 @@
 //! unjudged.
 
 use triptych_gpu::error::GpuError;
+use triptych_gpu::ldm::{self as device, irradiance};
 use triptych_gpu::rsm::gbuffer;
-use triptych_spec::ldm::{Open, environment, occlusion};
+use triptych_spec::ldm::{Open, Receiver, environment, occlusion};
 use triptych_spec::rsm::Colour;
 
-use super::{LdmLeg, Made};
+use super::{LdmLeg, Made, receivers};
 use crate::compare::ldm as judge;
 use crate::compare::rsm as seen;
 use crate::replay::judged::Judged;
@@ -33,14 +34,37 @@ impl LdmLeg<'_> {
             true => None,
             false => self.points(&mut judged)?,
         };
-        let made = askers.map_or(Ok(Vec::new()), |askers| {
-            let turns = turns.iter();
-            turns
-                .map(|turn| self.whole(turn, &askers, &mut judged))
-                .collect()
-        });
+        let made = askers.map_or(Ok(Vec::new()), |askers| self.turns(&askers, &mut judged));
         judged.rows(&self.spec.label, &self.label(), rows);
         made
+    }
+
+    /// All rotations, one onto the other, as far as they are sound; then what they add up to.
+    fn turns(&self, askers: &[Asker], judged: &mut Judged) -> Result<Vec<Made>, GpuError> {
+        let turns = &self.spec.value.turns;
+        let mut made = Vec::new();
+        let mut sums = Made {
+            open: vec![device::Open::default(); askers.len()],
+            light: vec![[0.0; 4]; askers.len()],
+            ..Made::default()
+        };
+        for turn in turns {
+            let sound = self.whole(turn, askers, &mut sums, judged)?;
+            made.push(sums.clone());
+            if !sound {
+                return Ok(made);
+            }
+        }
+        let (open, light) = self.expected(askers);
+        if self.runs("occlusion") {
+            judged.part(STAGE, self.judge_open(&open, &sums.open));
+        }
+        if self.runs("environment") {
+            let setup = &self.spec.value.setup;
+            let seen = irradiance(&sums.light, setup.directions * setup.rotations);
+            judged.part(STAGE, self.judge_light(&light, &seen));
+        }
+        Ok(made)
     }
 
     /// Who asks, by the device; `None` if its points are not what they may be.
@@ -73,19 +97,20 @@ impl LdmLeg<'_> {
         Ok(Some(askers))
     }
 
-    /// All stages from points and lists that the device made, in several batches if there are
-    /// several maps: a third of the room that all of them need.
+    /// All stages of a rotation from points and lists that the device made, added to the sums so
+    /// far; `false` if the lists are not what they must be. Maps are made in several batches if
+    /// there are several: a third of the room that all of them need.
     fn whole(
         &self,
         turn: &LdmTurn,
         askers: &[Asker],
+        sums: &mut Made,
         judged: &mut Judged,
-    ) -> Result<Made, GpuError> {
-        let mut made = Made::default();
+    ) -> Result<bool, GpuError> {
         let mut stages = self.stages(turn, budget(turn))?;
         if self.runs("layers") {
-            made.layers = stages.layers()?;
-            let (maps, layers) = (&turn.maps, &made.layers);
+            sums.layers = stages.layers()?;
+            let (maps, layers) = (&turn.maps, &sums.layers);
             let mut judgement = self.beside(&turn.layers, layers, |must, seen| {
                 judge::layers(maps, must, &seen.offsets, &seen.keys)
             });
@@ -93,34 +118,39 @@ impl LdmLeg<'_> {
             judgement.note = format!("{}, in {} batches", judgement.note, stages.batches());
             judged.part(STAGE, judgement);
             if !sound {
-                return Ok(made);
+                return Ok(false);
             }
         } else {
             stages.give_layers(&turn.layers)?;
         }
-        let (open, light) = self.expected(turn, askers);
+        let (own, falloff) = (receivers(askers), self.spec.value.setup.falloff);
         if self.runs("occlusion") {
-            made.open = self.open(askers, &mut stages)?;
-            judged.part(STAGE, self.judge_open(&open, &made.open));
+            sums.open = stages.occlusion_onto(&sums.open, &own, falloff)?;
         }
         if self.runs("environment") {
-            made.light = self.light(turn, askers, &mut stages)?;
-            judged.part(STAGE, self.judge_light(&light, &made.light));
+            let sky = (&turn.sky[..], &turn.lit[..]);
+            sums.light = stages.environment_onto(&sums.light, &own, sky)?;
         }
-        Ok(made)
+        Ok(true)
     }
 
-    /// What the spec makes of these points: what it has made where they are its own.
-    fn expected(&self, turn: &LdmTurn, askers: &[Asker]) -> (Vec<Open>, Vec<Colour>) {
-        let setup = &self.spec.value.setup;
-        let (mut open, mut light) = (turn.open.clone(), turn.light.clone());
+    /// What the spec makes of these points: what it has made where they are its own and there is
+    /// one rotation; of several, a device has one sum.
+    fn expected(&self, askers: &[Asker]) -> (Vec<Open>, Vec<Colour>) {
+        let run = &self.spec.value;
+        let setup = &run.setup;
+        let (mut open, mut light) = (run.open.clone(), run.light.clone());
         let both = askers.iter().zip(&setup.receivers).enumerate();
-        for (at, (asker, _)) in both.filter(|(_, (own, spec))| own != spec) {
-            let receiver = &asker.receiver;
-            let found: Vec<_> = turn.hits(receiver).collect();
-            open[at] = occlusion(found.iter().copied(), receiver.normal, setup.falloff);
+        for (at, (asker, _)) in both.filter(|(_, (own, spec))| own != spec || run.turns.len() > 1) {
+            let Receiver { normal, .. } = asker.receiver;
+            let found = run.turns.iter();
+            let found = found.map(|turn| (turn, turn.hits(&asker.receiver).collect()));
+            let found: Vec<(_, Vec<_>)> = found.collect();
+            let all = found.iter().flat_map(|(_, found)| found).copied();
+            open[at] = occlusion(all, normal, setup.falloff);
             if let Some(light) = light.get_mut(at) {
-                *light = environment(turn.lit_hits(&found), receiver.normal, setup.directions);
+                let lit = found.iter().flat_map(|(turn, found)| turn.lit_hits(found));
+                *light = environment(lit, normal, setup.directions * setup.rotations);
             }
         }
         (open, light)
