@@ -125,8 +125,8 @@ fn least(a: vec3<i32>, b: vec3<i32>) -> i32 {
     return select(1, 0, top_left);
 }
 
-// Of a box of at most 726 x 726 pixels: a quotient below 726 is off by less than 2^-13, and half a
-// pixel off the next integer.
+// Of a box of at most 726 x 726 pixels: a quotient below 726 is off by 2.5 units of its last
+// place, less than 2^-12, and at least 0.5 / 726 off the next integer.
 fn sample_of(map: Map, cover: Cover, i: u32) -> Sample {
     let down = u32((f32(i) + 0.5) / f32(cover.width));
     let pixel = vec2(cover.column + i32(i - down * cover.width), cover.row + i32(down));

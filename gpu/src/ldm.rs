@@ -141,7 +141,7 @@ impl From<&ldm::Receiver> for Receiver {
     }
 }
 
-/// What is before and behind a receiver. Twin: `Hits` in `ldm.wgsl`.
+/// What is before and behind a receiver. Twin: `Hits` in `opened.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 struct Hits {
@@ -161,7 +161,7 @@ impl From<Hits> for ldm::Hits {
     }
 }
 
-/// What of a receiver's directions is open. Twin: `Open` in `ldm.wgsl`.
+/// What of a receiver's directions is open. Twin: `Open` in `opened.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Open {
