@@ -86,3 +86,23 @@ fn maps_are_dumped_by_the_spec() {
         "the second is turned"
     );
 }
+
+/// Surfaces are all behind the camera: there is nothing to do, and every leg says so of every stage.
+#[test]
+fn where_nobody_asks_every_leg_says_so() {
+    let place = Place::new("ldm-nobody");
+    let away = SCENE.replace("target = [-0.2, 0.55, 0]", "target = [5, 4.6, 9.2]");
+    place.write("corpus/ldm/away/scene.toml", &away);
+    // Nothing is compared, which is no success.
+    let ran = place.run(&["replay", "--leg", "gpu"]).expect(2);
+    let reason = "  nobody asks: no pixel sees anything";
+    let mut counts = ran
+        .stdout
+        .lines()
+        .filter_map(|line| line.strip_suffix(reason));
+    let count = counts.find_map(|count| count.trim().parse::<usize>().ok());
+    // Layers, chain, neighbours, occlusion and environment on each leg, of which there are three
+    // with two drivers.
+    let each = count.is_some_and(|count| count >= 5 && count % 5 == 0);
+    assert!(each, "{}", ran.stdout);
+}

@@ -26,6 +26,7 @@ use crate::observe::{Embree, Observed};
 use crate::plan::LdmPlan;
 use crate::row::Class;
 pub use embree::{Off, SAMPLES, Seen, ask, passes, random, same};
+pub(crate) use gpu::chains;
 pub use gpu::{LdmLeg, Made};
 pub use setup::{Asker, Setup, Turn, bounds};
 pub use spec::{LdmRun, LdmTurn, Times};

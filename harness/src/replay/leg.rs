@@ -48,14 +48,19 @@ impl<S> Leg<'_, S> {
     /// A row for each stage that does not run, with the reason.
     pub(super) fn left_out(&self, rows: &mut Rows) {
         for pass in self.passes.iter().filter(|pass| !pass.runs) {
-            let reason = format!("plan: {}", pass.reason);
-            rows.skip(
-                pass.name,
-                &self.spec.label,
-                &self.label(),
-                Class::Exact,
-                reason,
-            );
+            self.skip(pass, format!("plan: {}", pass.reason), rows);
         }
+    }
+
+    /// A row for each stage that the plan has run, though what the spec saw leaves nothing to do.
+    pub(super) fn idle(&self, reason: &str, rows: &mut Rows) {
+        for pass in self.passes.iter().filter(|pass| pass.runs) {
+            self.skip(pass, reason.to_owned(), rows);
+        }
+    }
+
+    fn skip(&self, pass: &Pass, reason: String, rows: &mut Rows) {
+        let label = self.label();
+        rows.skip(pass.name, &self.spec.label, &label, Class::Exact, reason);
     }
 }

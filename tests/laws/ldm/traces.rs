@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::lattice::Point;
-use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Receiver, Rotation, layers, neighbours};
+use triptych_spec::ldm::{Hits, KEYS_PER_STEP, Receiver, Rotation, layers, neighbours, own_band};
 use triptych_spec::rsm::Face;
 
 use super::{direction, empty, maps_of, mesh, normal_of, point, quad, sphere, uncropped};
@@ -158,19 +158,13 @@ proptest! {
                 true => layers.list(map.first + (row * w + column).unsigned_abs()),
                 false => &[],
             };
-            // Nothing between the point's own and what is found, and what is found is in it.
+            // On each side the first key beyond the point's own band, or none: that is what tells
+            // a side on which all keys are its own from one that was not looked at.
+            let band = i64::from(own_band(&maps, map, &receiver));
             for (found, sign) in [(hits.before, -1), (hits.behind, 1)] {
                 let apart = |k: &u32| sign * (i64::from(*k) - i64::from(key));
-                if let Some(found) = found {
-                    prop_assert!(list.contains(&found) && apart(&found) > 0);
-                    let band = apart(&found);
-                    let between = list.iter().map(apart).filter(|a| *a < band).max();
-                    // All that is nearer is the point's own, on both sides alike.
-                    let own = between.unwrap_or(0).max(0);
-                    let other = if sign < 0 { hits.behind } else { hits.before };
-                    let across = other.map_or(i64::MAX, |k| -apart(&k));
-                    prop_assert!(own < across, "{} {}", own, across);
-                }
+                let beyond = list.iter().filter(|k| apart(k) > band).min_by_key(|k| apart(k));
+                prop_assert_eq!(found, beyond.copied(), "{} {}", sign, band);
             }
         }
     }

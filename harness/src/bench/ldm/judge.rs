@@ -3,11 +3,12 @@
 use triptych_gpu::error::GpuError;
 use triptych_gpu::ldm::{self as device, Stages, Timed};
 use triptych_spec::bound::{Bounded, Real};
-use triptych_spec::ldm::{Chains, Layers, Link, Maps, Open, layers, neighbours, occlusion};
+use triptych_spec::ldm::{Layers, Maps, Open, layers, neighbours, occlusion};
 
 use super::super::legs::Station;
 use super::case::Case;
 use crate::compare::ldm as judge;
+use crate::replay::ldm::chains as as_spec;
 
 /// Pairs of a triangle and a map that the spec draws to compare lists, about.
 const DRAWN: usize = 1 << 22;
@@ -101,20 +102,6 @@ fn check_lists(case: &Case<'_>, maps: &Maps, made: &Layers) -> Result<(), String
         }
     }
     Ok(())
-}
-
-/// The paper's lists as the spec has them.
-fn as_spec(own: device::Chains, capacity: u32) -> Chains {
-    let link = |link: device::Link| Link {
-        key: link.key,
-        next: link.next,
-    };
-    Chains {
-        heads: own.heads,
-        links: own.links.into_iter().map(link).collect(),
-        attempts: u32::try_from(own.attempts).unwrap_or(u32::MAX),
-        capacity,
-    }
 }
 
 /// Refuses the paper's lists unless they hold what runs hold, in the same order.

@@ -1,5 +1,6 @@
 //! All scenes and settings.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use super::super::legs::stations;
@@ -33,22 +34,15 @@ pub struct Options {
 /// # Errors
 /// One line for a scene that cannot be read; a mesh that is missing skips its scene.
 pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Result<Sweep, String> {
-    let mut sweep = Sweep {
-        date: options.date.clone(),
-        machine: Machine::here(adapters),
-        runs: options.runs,
-        rows: Vec::new(),
-        contests: Vec::new(),
-        skips: Vec::new(),
-        pictures: Vec::new(),
-        remarks: Vec::new(),
-    };
+    let mut sweep = Sweep::empty(&options.date, Machine::here(adapters), options.runs);
     let stations = stations(adapters, &mut sweep.remarks);
-    let ceilings: Vec<Option<Ceilings>> = stations
-        .iter()
-        .map(|s| Ceilings::of(&s.adapter.gpu, &s.kernels, options.runs.min(5)).ok())
-        .map(|measured| measured.map(|(ceilings, _)| ceilings))
-        .collect();
+    let mut ceilings = Vec::new();
+    for station in &stations {
+        let gpu = &station.adapter.gpu;
+        let measured = Ceilings::of(gpu, &station.kernels, options.runs.min(5));
+        let own = measured.map(|(ceilings, _)| ceilings);
+        ceilings.push(sweep.or_not(&format!("ceilings of {}", gpu.name), own));
+    }
     for loaded in &sweep.load(options)? {
         for cuts in [0, options.cuts]
             .into_iter()
@@ -80,6 +74,20 @@ pub fn run(adapters: &[Adapter], options: &Options, progress: &Progress) -> Resu
 }
 
 impl Sweep {
+    /// Nothing is measured yet.
+    fn empty(date: &str, machine: Machine, runs: u32) -> Self {
+        Self {
+            date: date.to_owned(),
+            machine,
+            runs,
+            rows: Vec::new(),
+            contests: Vec::new(),
+            skips: Vec::new(),
+            pictures: Vec::new(),
+            remarks: Vec::new(),
+        }
+    }
+
     /// The scenes that can be read.
     fn load(&mut self, options: &Options) -> Result<Vec<Loaded>, String> {
         let mut all = Vec::new();
@@ -108,6 +116,12 @@ impl Sweep {
         Ok(all)
     }
 
+    /// What could be measured; else a remark says why not.
+    fn or_not<T>(&mut self, what: &str, measured: Result<T, impl Display>) -> Option<T> {
+        let failed = |error| self.not(&format!("{what}: {error}"));
+        measured.map_err(failed).ok()
+    }
+
     pub(super) fn not(&mut self, why: &str) {
         self.remarks.push(format!("not measured: {why}"));
     }
@@ -126,6 +140,15 @@ fn own(name: &str, text: &str) -> Result<Loaded, LoadError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_cannot_be_measured_is_remarked() {
+        let mut sweep = Sweep::empty("2000-01-02", Machine::default(), 1);
+        assert_eq!(sweep.or_not("a", Ok::<_, String>(7)), Some(7));
+        assert_eq!(sweep.remarks, [""; 0]);
+        assert_eq!(sweep.or_not::<u32>("ceilings of b", Err("lost")), None);
+        assert_eq!(sweep.remarks, ["not measured: ceilings of b: lost"]);
+    }
 
     #[test]
     fn our_scenes_are_of_the_papers_size() {

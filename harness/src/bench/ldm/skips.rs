@@ -5,9 +5,10 @@
 //! - *Cropping*: of all maps, what lies beside the box around the receivers.
 //! - *Dark directions*: maps through which no light comes, when stage `environment` asks.
 //! - *Lists of one*: their keys, when lists are sorted. Against them stand kernels that take the
-//!   first key of a run up and put it down again, and that merge a chain of one entry.
+//!   only key of a run up and put it down again, and that merge a chain of one entry.
+//! - *All keys*: a sort of the same maps with nothing in them. An empty list is no work to leave
+//!   out: a sort reads where it begins and ends. What that costs is this time over all lists.
 //!
-//! Empty lists are no work to leave out: a sort reads where they begin and end, and that is that.
 //! How many lists there are of which length is counted.
 
 mod measure;
@@ -25,6 +26,9 @@ pub use table::{csv, lines, page};
 /// has an invocation for one of the third kind, a workgroup for one of the fourth, and passes of
 /// their own for longer ones.
 const LENGTHS: [usize; 5] = [0, 1, 32, 512, usize::MAX];
+
+/// What a sort of empty lists leaves out.
+const ALL_KEYS: &str = "all keys";
 
 /// A scene on an adapter.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +62,14 @@ pub struct Skip {
     pub full: Side,
     /// The full time over the planned one, in each round.
     pub ratio: Spread,
+}
+
+impl Skip {
+    /// Nanoseconds of each list that the planned side works on; `None` if there is none.
+    fn of_each(&self) -> Option<f64> {
+        let lists = self.planned.pixels;
+        (lists > 0).then(|| 1e6 * self.planned.time.median / lists as f64)
+    }
 }
 
 /// What is worked on, and for how long.

@@ -20,6 +20,9 @@ use crate::replay::rows::Rows;
 /// Traces that are compared at once: 12 bytes each on both sides.
 const TRACES: usize = 1 << 22;
 
+/// Why there are no maps, where surfaces are all out of the picture.
+const NOBODY: &str = "nobody asks: no pixel sees anything";
+
 /// One GPU leg of one scene.
 pub type LdmLeg<'a> = Leg<'a, LdmRun>;
 
@@ -61,6 +64,9 @@ impl LdmLeg<'_> {
             self.sums(turn, &mut stages, &mut judged)?;
         }
         judged.rows(&self.spec.label, &self.label(), rows);
+        if self.spec.value.turns.is_empty() {
+            self.idle(NOBODY, rows);
+        }
         self.left_out(rows);
         Ok(())
     }
@@ -209,7 +215,7 @@ fn receivers(askers: &[Asker]) -> Vec<Receiver> {
 }
 
 /// A device's chains as those of the spec are written.
-fn chains(seen: device::Chains, capacity: u32) -> Chains {
+pub(crate) fn chains(seen: device::Chains, capacity: u32) -> Chains {
     let link = |link: device::Link| Link {
         key: link.key,
         next: link.next,

@@ -32,6 +32,8 @@ pub struct Setup {
     pub seen: Gbuffer,
     /// Who asks: the points that pixels see.
     pub receivers: Vec<Asker>,
+    /// Their normals, each once.
+    normals: BTreeSet<Point>,
     /// How far points are moved off their faces, in steps along one axis.
     pub offset: u32,
     /// Directions of a set.
@@ -91,6 +93,7 @@ impl Setup {
         let offset = section.offset.0.max(OFFSET_MIN);
         let seen = gbuffer(&model, &eye, &off_faces(offset));
         let receivers = receivers(&model, &seen.surfaces, |_| off(offset));
+        let normals = receivers.iter().map(|r| r.receiver.normal).collect();
         let falloff = match section.far {
             None => Falloff::None,
             Some(far) => far_in_steps(&lattice, far.0, section.power())?,
@@ -102,6 +105,7 @@ impl Setup {
             blockers,
             seen,
             receivers,
+            normals,
             offset,
             directions: section.directions.0,
             rotations: section.rotations.0,
@@ -120,9 +124,8 @@ impl Setup {
         let set = directions(self.directions).map_err(|e| e.to_string())?;
         let mut set = rotated(&set, self.seed, rotation);
         let mut maps = self.maps(&set, skip)?;
-        let normals: BTreeSet<Point> = self.receivers.iter().map(|r| r.receiver.normal).collect();
         if skip {
-            let counts = |map: &&ldm::Map| normals.iter().any(|n| weight(map, *n) != 0);
+            let counts = |map: &&ldm::Map| self.normals.iter().any(|n| weight(map, *n) != 0);
             let needed = maps.maps.iter().filter(counts).map(|map| map.direction);
             let needed: Vec<[f64; 3]> = needed.collect();
             if needed.len() < set.len() {
@@ -141,7 +144,7 @@ impl Setup {
                 0 => false,
                 weight => sky[usize::from(weight < 0)] != [0.0; 3],
             };
-            !skip || normals.iter().any(side)
+            !skip || self.normals.iter().any(side)
         });
         Ok(Turn {
             lit: lit.collect(),

@@ -18,8 +18,13 @@ pub const SKY_BYTES_MAX: u64 = 1 << 27;
 /// Most texels of a picture, and of a tile in its file: 8192 x 4096.
 pub const SKY_PIXELS_MAX: u64 = 1 << 25;
 
-/// Most layers of a file, and channels of a layer: each is a plane that is unpacked.
+/// Most layers and channels of a file.
 const PARTS_MAX: usize = 64;
+
+/// Most bytes of a block of an `.exr`, which is a tile or some lines in all channels: it is unpacked
+/// as a whole, however few channels are needed, and a file that is a thousandth of it may say that it
+/// has it.
+const SKY_BLOCK_MAX: usize = 1 << 27;
 
 /// A picture of everything: rows of radiance from the top, columns from the left.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,6 +147,14 @@ fn open_exr(bytes: &[u8]) -> Decoded {
         if let BlockDescription::Tiles(tiles) = header.blocks {
             let [width, height] = [tiles.tile_size.0, tiles.tile_size.1].map(|n| n as u64);
             sized(width, height)?;
+        }
+        // Of sides that are within limits, so the product is within 64 bits.
+        let block = header.max_block_byte_size();
+        if block > SKY_BLOCK_MAX {
+            return Err(format!(
+                "has blocks of {block} bytes in {} channels; {SKY_BLOCK_MAX} are allowed",
+                channels(header)
+            ));
         }
     }
     let create = |size: exr::math::Vec2<usize>, _: &_| {

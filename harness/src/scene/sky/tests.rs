@@ -168,3 +168,48 @@ fn an_exr_is_as_it_is() {
     refused("a.exr", &huge, "a.exr: ");
     std::fs::remove_dir_all(&folder).expect("removed");
 }
+
+/// A tile is unpacked in all its channels: how large it says that it is, times how many they are, is
+/// counted before.
+#[test]
+fn a_tile_of_an_exr_has_room_for_three_channels_not_for_all() {
+    use exr::prelude::*;
+    let named = |n: usize| AnyChannel::new(&*format!("{n:02}"), FlatSamples::F32(vec![1.0; 16]));
+    let written = |channels: Vec<AnyChannel<FlatSamples>>| {
+        let blocks = Blocks::Tiles(Vec2(4, 4));
+        let layer = Layer::new(
+            (4, 4),
+            LayerAttributes::named("sky"),
+            Encoding {
+                compression: Compression::ZIP16,
+                blocks,
+                line_order: LineOrder::Increasing,
+            },
+            AnyChannels::sort(channels.into_iter().collect()),
+        );
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        Image::from_layer(layer)
+            .write()
+            .to_buffered(&mut bytes)
+            .expect("written");
+        bytes.into_inner()
+    };
+    let rgb = ["R", "G", "B"].map(|name| AnyChannel::new(name, FlatSamples::F32(vec![1.0; 16])));
+    // The tile that the file says it has is larger than its picture.
+    let grown = |channels, side: u32| {
+        let mut bytes = written(channels);
+        let name = b"tiles\0tiledesc\0";
+        let at = bytes
+            .windows(name.len())
+            .position(|w| w == name)
+            .expect("there");
+        let sides = at + name.len() + 4;
+        bytes[sides..sides + 8].copy_from_slice(&[side.to_le_bytes(); 2].concat());
+        bytes
+    };
+    assert!(loaded("a.exr", &grown(rgb.to_vec(), 2048)).is_ok());
+    let all = || (0..60).map(named).chain(rgb.clone()).collect::<Vec<_>>();
+    assert!(loaded("a.exr", &grown(all(), 512)).is_ok());
+    let words = "has blocks of 1056964608 bytes in 63 channels; 134217728 are allowed";
+    refused("a.exr", &grown(all(), 2048), words);
+}

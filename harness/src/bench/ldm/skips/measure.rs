@@ -2,7 +2,8 @@
 
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::ldm::{ChainSpan, Question, Span, Timed, TimedChains};
-use triptych_spec::ldm::Maps;
+use triptych_spec::grid::Blockers;
+use triptych_spec::ldm::{Layers, Maps};
 
 use super::super::super::Spread;
 use super::super::super::legs::Station;
@@ -11,7 +12,7 @@ use super::super::gpu::leg;
 use super::super::judge::{Made, check_chains, check_sums, made, opened, words};
 use super::super::rounds::{Frame, Rounds, part, rounds, spread};
 use super::patch::{CHAINS_OF_ONE, RUNS_OF_ONE, patched};
-use super::{Side, Skip, Skips, lengths};
+use super::{ALL_KEYS, Side, Skip, Skips, lengths};
 use crate::replay::ldm::Turn;
 
 /// Maps with their lists.
@@ -64,6 +65,7 @@ pub(in crate::bench::ldm) fn measure(
     }
     rows.push(bench.runs_of_one(own)?);
     rows.push(bench.chains_of_one(own)?);
+    rows.push(bench.all_keys(own)?);
     Ok(Skips {
         scene: case.name.clone(),
         leg: leg(station, &made),
@@ -166,14 +168,51 @@ impl Bench<'_> {
         ))
     }
 
+    /// Lists as runs, sorted, and the same maps with nothing in them: every list is empty.
+    fn all_keys(&self, own: Built<'_>) -> Result<Skip, String> {
+        let made = Made {
+            layers: Layers {
+                offsets: vec![0; own.made.layers.offsets.len()],
+                keys: Vec::new(),
+            },
+            turns: None,
+            native: own.made.native,
+        };
+        let nothing = Built { made: &made, ..own };
+        let kernels = patched(own.made.native, None);
+        let question = Question::Occlusion(self.case.setup.falloff);
+        let nobody = Blockers {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+        };
+        let one = self.timed_of(&kernels, (nothing, &nobody), question)?;
+        let two = self.timed(&kernels, own, question)?;
+        let times = self.rounds([Frame::from(&one), Frame::from(&two)])?;
+        unchanged(&one, nothing)?;
+        unchanged(&two, own)?;
+        let sides = [nothing, own].map(Built::side);
+        Ok(skip((ALL_KEYS, "sort"), sides, &times, |rounds| {
+            part(rounds, &[Span::Sort])
+        }))
+    }
+
     fn timed<'t>(
         &'t self,
         kernels: &'t Kernels,
         of: Built<'t>,
         question: Question<'_>,
     ) -> Result<Timed<'t>, String> {
+        self.timed_of(kernels, (of, &self.case.setup.blockers), question)
+    }
+
+    fn timed_of<'t>(
+        &'t self,
+        kernels: &'t Kernels,
+        (of, blockers): (Built<'t>, &Blockers),
+        question: Question<'_>,
+    ) -> Result<Timed<'t>, String> {
         let gpu = &self.station.adapter.gpu;
-        let maps = (of.maps, &self.case.setup.blockers);
+        let maps = (of.maps, blockers);
         let asking = (&self.case.receivers[..], question);
         Timed::new(gpu, kernels, maps, &of.made.layers, asking).map_err(words)
     }

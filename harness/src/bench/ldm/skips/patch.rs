@@ -6,11 +6,11 @@ use triptych_gpu::wgsl::Sources;
 /// A defect that is none: the same answers by more work.
 pub(super) type Patch = (&'static str, &'static str, &'static str);
 
-/// Each run's first key is taken up and put down.
+/// The key of a run of one is taken up and put down; longer runs are sorted as ever.
 pub(super) const RUNS_OF_ONE: Patch = (
     "sort",
     "for (var i = start + 1u; i < end; i += 1u)",
-    "for (var i = start; i < end; i += 1u)",
+    "for (var i = select(start + 1u, start, end == start + 1u); i < end; i += 1u)",
 );
 
 /// A chain of one is merged like any other.

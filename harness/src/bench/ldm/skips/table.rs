@@ -4,7 +4,7 @@ use super::super::super::csv::number;
 use super::super::super::table::{aligned, spread};
 use super::super::super::{Spread, WARM_UP, markdown};
 use super::super::Sweep;
-use super::{Side, Skip, Skips};
+use super::{ALL_KEYS, Side, Skip, Skips};
 use crate::text::{clean, count, markdown as text, quoted, share};
 
 const COLUMNS: [&str; 10] = [
@@ -76,7 +76,12 @@ fn kinds_of(of: &Skips) -> String {
         format!("{name}: {} ({} of keys)", part(0), part(1))
     });
     let kinds = kinds.collect::<Vec<_>>().join(", ");
-    format!("{} lists by length: {kinds}", count(all[0]))
+    let empty = of.rows.iter().find(|row| row.what == ALL_KEYS);
+    let empty = empty.and_then(Skip::of_each);
+    let empty = empty.map_or(String::new(), |ns| {
+        format!("; an empty one costs a sort {ns:.4} ns")
+    });
+    format!("{} lists by length: {kinds}{empty}", count(all[0]))
 }
 
 /// Lines for the terminal.
@@ -132,8 +137,8 @@ fn how(runs: u32) -> String {
          else as planned.\nBoth ways every sum is the same to the bit. *Directions*: in which no receiver's weight is more \
          than 0. *Cropping*: what\nlies beside the box around the receivers. *Dark directions*: through which no light \
          comes, in stage `environment`; only\nwhere there is a sky. *Lists of one*: a sort has nothing to do; in full, kernels take \
-         the first key of each run up and put\nit down again, and merge a chain of one entry. Empty lists cost a sort \
-         the look at where they begin and end, both ways.\n*Frame*: from corners to what is open; *ask* and *sort* are parts."
+         its key up and put it down\nagain, and merge a chain of one entry. *All keys*: planned, a sort of the same maps with nothing \
+         in them, all lists empty;\nits time over their number is what a pixel costs that is not cropped, but empty.\n*Frame*: from corners to what is open; *ask* and *sort* are parts."
     )
 }
 
@@ -186,19 +191,20 @@ mod tests {
             keys: 7,
             time: Spread::of([0.5 * n as f64]),
         };
+        let row = |what| Skip {
+            what,
+            part: "sort",
+            planned: side(2),
+            full: side(4),
+            ratio: Spread::of([2.0]),
+        };
         let skips = Skips {
             scene: "a|b".into(),
             leg: "gpu@x, native".into(),
             clock: "host",
             directions: 4,
             resolution: 9,
-            rows: vec![Skip {
-                what: "lists of one, runs",
-                part: "sort",
-                planned: side(2),
-                full: side(4),
-                ratio: Spread::of([2.0]),
-            }],
+            rows: ["lists of one, runs", ALL_KEYS].map(row).to_vec(),
             lengths: [[50, 0], [25, 25], [25, 75], [0, 0], [0, 0]],
         };
         let sweep = Sweep {
@@ -217,12 +223,17 @@ mod tests {
         let widths = csv.lines().map(|line| line.split(',').count());
         assert_eq!(
             widths.collect::<Vec<_>>(),
-            [VALUES.len(); 1 + 1 + 5],
+            [VALUES.len(); 1 + 2 + 5],
             "{csv}"
         );
         let page = page(&sweep);
         assert!(page.contains("| 2 of 4 | 2,000 of 4,000 | 7 |"), "{page}");
         assert!(page.contains("1: 25.0 % (25.0 % of keys)"), "{page}");
-        assert_eq!(lines(&sweep).len(), 1 + 1 + 1);
+        // 1 ms over 2,000 lists.
+        assert!(
+            page.contains("an empty one costs a sort 500.0000 ns"),
+            "{page}"
+        );
+        assert_eq!(lines(&sweep).len(), 1 + 2 + 1);
     }
 }

@@ -75,6 +75,27 @@ fn a_vote_on_nothing_is_no_agreement() {
     assert_eq!((judgement.skipped, judgement.compared), (None, 0));
 }
 
+/// Slivers of less than a pixel: rays through pixels' middles pass every one of them near an edge.
+#[test]
+fn a_vote_on_edges_alone_is_none() {
+    let mesh = "generate.scatter = { count = 60, extent = [1, 1, 1], length = 1, width = 1e-4 }\n\
+                [[mesh]]\nblocks = false\n\
+                generate.faces = { vertices = [[-1, -1, 0], [1, -1, 0], [0, 1, 0]], faces = [[0, 1, 2]] }";
+    let run = run("directions = 9\nresolution = 24", mesh);
+    let turn = &run.turns[0];
+    let vote = voted(&run, &turn.maps, &turn.layers);
+    assert!(vote.pairs > 0 && vote.pairs == vote.edge, "{vote}");
+    let judgement = vote.judgement(Some(0.1));
+    let reason = format!("all {} pairs are in class edge", vote.pairs);
+    assert_eq!(judgement.skipped, Some(reason));
+    assert!(judgement.causes.is_empty(), "{vote}");
+    let wrong = MapVote {
+        disagree: 1,
+        ..vote
+    };
+    assert_eq!(wrong.judgement(None).skipped, None);
+}
+
 /// Pixels of 128 steps, as they are where what blocks is small on the lattice.
 fn small() -> LdmRun {
     let mesh = "generate.torus = { radii = [1, 0.4], segments = [24, 12] }\nscale = 1e-4\n\

@@ -108,10 +108,14 @@ impl MapVote {
     /// `None` where it is counted only. A vote alone cannot say who errs.
     pub fn judgement(&self, edge_budget: Option<f64>) -> Judgement {
         let cause = (self.disagree > 0).then_some((Cause::OracleDisagreement, self.disagree));
-        let nothing = self.pairs == 0 && self.disagree == 0;
-        let none = "no pixel that was asked about is near a triangle";
+        // Pairs that are admitted unseen say nothing.
+        let nothing = self.pairs == self.edge && self.disagree == 0;
+        let reason = || match self.pairs {
+            0 => "no pixel that was asked about is near a triangle".to_owned(),
+            pairs => format!("all {pairs} pairs are in class edge"),
+        };
         Judgement {
-            skipped: nothing.then(|| none.to_owned()),
+            skipped: nothing.then(reason),
             compared: self.pairs,
             causes: cause.into_iter().collect(),
             admitted: self.edge,
