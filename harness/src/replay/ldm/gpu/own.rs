@@ -107,6 +107,9 @@ impl LdmLeg<'_> {
             made.light = self.light(turn, askers, &mut stages)?;
             judged.part(STAGE, self.judge_light(&light, &made.light));
         }
+        if let Some(judgement) = self.own_reflections(turn, askers, &mut stages)? {
+            judged.part(STAGE, judgement);
+        }
         Ok(made)
     }
 
