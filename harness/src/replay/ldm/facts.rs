@@ -128,7 +128,15 @@ fn words_of(mirrored: &Mirrored) -> [u32; 7] {
     let some = |number: Option<u32>| number.unwrap_or(NOTHING);
     let key = mirrored.key.cast_unsigned();
     let map = some(mirrored.map);
-    [map, mirrored.opposite.into(), key, some(mirrored.hit), r, g, b]
+    [
+        map,
+        mirrored.opposite.into(),
+        key,
+        some(mirrored.hit),
+        r,
+        g,
+        b,
+    ]
 }
 
 /// In steps of 2^-16: an integer.
