@@ -7,6 +7,7 @@ mod batch;
 mod device;
 mod light;
 mod lists;
+mod mirror;
 mod stages;
 mod timed;
 

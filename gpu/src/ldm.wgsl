@@ -9,6 +9,7 @@
 //#import counter
 //#import relink
 //#import opened
+//#import mirror
 
 // First entry of each pixel's linked list, or EOL.
 @group(0) @binding(10) var<storage, read_write> heads: array<atomic<u32>>;
@@ -268,5 +269,14 @@ fn environment(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
     let i = item(id, groups);
     if i < told.items {
         add_light(i);
+    }
+}
+
+// The same.
+@compute @workgroup_size(64)
+fn mirror(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = item(id, groups);
+    if i < told.items {
+        add_mirror(i);
     }
 }

@@ -213,13 +213,16 @@ pub struct LdmPlan {
 
 impl LdmPlan {
     /// Without surfaces nobody asks what is open; without blockers there is nothing in any map,
-    /// and everything is; without a sky there is no light.
+    /// and everything is; without a sky there is no light; only what the scene says mirrors.
     pub fn new(loaded: &Loaded, skip: bool) -> Self {
         let [seen, blocking] = loaded.parts();
-        let maps = loaded.file.ldm.as_ref().map_or(0, |l| l.get_ref().maps());
+        let ldm = loaded.file.ldm.as_ref().map(|l| l.get_ref());
+        let maps = ldm.map_or(0, super::scene::ldm::Ldm::maps);
+        let mirrors = ldm.is_some_and(|l| l.mirror);
         let needed = |name: &str| match name {
             _ if seen == 0 => Err("nothing is seen"),
             "environment" if loaded.sky.is_none() => Err("there is no sky"),
+            "mirror" if !mirrors => Err("nothing mirrors"),
             "layers" | "chain" | "neighbours" if blocking == 0 => Err("nothing blocks"),
             "layers" | "chain" => Ok(format!("{blocking} triangles in {maps} maps")),
             _ => Ok(format!("{seen} triangles are seen")),

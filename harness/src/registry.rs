@@ -160,6 +160,7 @@ pub const FAMILIES: &[Family] = &[
             of_maps("neighbours", &["neighbours"]),
             of_maps("occlusion", &["occlusion"]),
             of_maps("environment", &["environment"]),
+            of_maps("mirror", &["mirror"]),
         ],
         no_corpus: None,
     },

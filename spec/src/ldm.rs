@@ -5,7 +5,7 @@
 //! an orthographic picture that keeps all depths of every pixel, front and back faces alike. One
 //! is made for each of N [`directions`], all of them a partition of half the sphere; [`layers`]
 //! fills and sorts them, [`neighbours`] finds what is before and behind a point along a direction,
-//! [`occlusion`] and [`environment`] sum that up over the directions.
+//! [`occlusion`] and [`environment`] sum that up over the directions, and [`mirror`] picks one of them.
 //!
 //! **What decides is integers.** Blockers and points are on the lattice of the [`crate::grid`],
 //! and a map's axes are rows of integers, made once and given to every leg ([`Map`]). So
@@ -20,6 +20,7 @@
 //! | [`neighbours`] | the keys before and behind a point's own | exact |
 //! | [`occlusion`] | weight of what is open | exact; with a distance interval |
 //! | [`environment`] | irradiance | interval |
+//! | [`mirror`] | what is seen in the direction nearest to the mirror direction | exact |
 //!
 //! Settled errata of the paper: equation 2's sum has N terms, not N + 1; what lies beside a map
 //! is open and weighs as much as any other direction; a point's own layers are those within half
@@ -30,6 +31,7 @@ mod directions;
 mod environment;
 mod layers;
 mod map;
+mod mirror;
 mod neighbours;
 mod occlusion;
 mod rotation;
@@ -39,6 +41,7 @@ pub use directions::{DIRECTIONS_MAX, Zone, directions, zones};
 pub use environment::{Sky, environment};
 pub use layers::{KEYS_MAX, Layers, layers};
 pub use map::{KEYS_PER_STEP, Map, Maps, PLANE_BITS, RESOLUTION_MAX, RESOLUTION_MIN};
+pub use mirror::{Mirrored, mirror, nearness, view};
 pub use neighbours::{Hits, OFF_MAX, Receiver, neighbours, own_band};
 pub use occlusion::{FAR_MAX, Falloff, Open, WEIGHT_BITS, occlusion, openness, weight};
 pub use rotation::{Rotation, rotated};

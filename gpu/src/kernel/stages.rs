@@ -4,7 +4,7 @@
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 26] = [
+pub const STAGES: [Stage; 27] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -266,5 +266,16 @@ pub const STAGES: [Stage; 26] = [
         contract: "Adds to light[i], over told.maps maps, the weight of each on whose side nothing blocks \
             receivers[i], times the radiance in skies from there: the first of a map from its direction, \
             the second from the opposite one.",
+    },
+    Stage {
+        name: "mirror",
+        file: "ldm",
+        compute: &["mirror"],
+        fragment: &[],
+        contract: "mirrored[i] is, of told.maps maps and what it was, whose map is 0xffffffff at first, the \
+            direction on the side of receivers[i] with the largest dot product with its mirror vector, of \
+            equals the first: the map, 1 for its opposite direction, the receiver's key, the nearest key \
+            there or 0xffffffff, and then the radiance in skies, else 0. views[i] is the vector to the eye; \
+            0 finds nothing, as do maps without weight.",
     },
 ];

@@ -117,13 +117,13 @@ impl Stages<'_> {
         gpu.read(&light, receivers.len())
     }
 
-    fn upload(&self, receivers: &[Receiver]) -> Result<wgpu::Buffer, GpuError> {
+    pub(super) fn upload(&self, receivers: &[Receiver]) -> Result<wgpu::Buffer, GpuError> {
         let packed: Vec<_> = receivers.iter().map(super::Receiver::from).collect();
         self.device.gpu.upload("receivers", &packed)
     }
 
     /// One invocation for each receiver; of the maps that are asked, so many at a time.
-    fn ask(
+    pub(super) fn ask(
         &mut self,
         (entry, asked): (&str, impl Fn(u32) -> bool),
         told: Told,
@@ -205,7 +205,7 @@ pub(super) fn fading(told: Told, falloff: Falloff) -> Told {
     }
 }
 
-fn count(receivers: &[Receiver]) -> u32 {
+pub(super) fn count(receivers: &[Receiver]) -> u32 {
     u32::try_from(receivers.len()).expect("fewer than 2^32")
 }
 

@@ -37,6 +37,7 @@ impl Sources {
             "maps",
             "march",
             "meet",
+            "mirror",
             "nearest",
             "opened",
             "overlap",

@@ -21,7 +21,7 @@ use crate::cause::Cause;
 use crate::row::Class;
 
 pub use chains::{chains, may_follow};
-pub use found::{light, neighbours, open};
+pub use found::{light, mirrored, neighbours, open};
 pub use lists::layers;
 
 /// The triangles as the spec draws them into a map.

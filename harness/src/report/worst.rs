@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 32] = [
+const ORDER: [&str; 33] = [
     "leg",
     "all",
     "expect",
@@ -41,6 +41,7 @@ const ORDER: [&str; 32] = [
     "neighbours",
     "occlusion",
     "environment",
+    "mirror",
     "end to end",
     "plan",
 ];

@@ -42,6 +42,10 @@ pub struct Ldm {
     /// Steps of the lattice by which points are moved off their faces.
     #[serde(default = "Ldm::offset")]
     pub offset: Whole<OFFSET_MIN, OFFSET_MAX>,
+    /// Whether surfaces mirror: what each point sees in the direction nearest to its mirror
+    /// direction.
+    #[serde(default)]
+    pub mirror: bool,
     /// Light from all around; left out, there is no stage `environment`.
     pub sky: Option<Spanned<SkyEntry>>,
 }

@@ -8,7 +8,8 @@ use triptych_gpu::lists::LONG;
 use triptych_spec::abuffer::EOL;
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{
-    Falloff, Hits, Layers, Map, Maps, Receiver, Sky, environment, layers, neighbours, occlusion,
+    Falloff, Hits, Layers, Map, Maps, Receiver, Sky, environment, layers, mirror, neighbours,
+    occlusion, view,
 };
 
 use super::{around, direction, empty, point, quad, sphere};
@@ -123,7 +124,8 @@ fn answers_agree(
             prop_assert!(is_in, "{}: {:?} {:?}", name, seen, open);
         }
     }
-    lights_agree(stages, receivers, &must, name)
+    lights_agree(stages, receivers, &must, name)?;
+    mirrors_agree(stages, receivers, &must, name)
 }
 
 fn lights_agree(
@@ -147,6 +149,30 @@ fn lights_agree(
             let is_in = must.admits(seen.into());
             prop_assert!(is_in, "{}: {} {:?}", name, seen, must);
         }
+    }
+    Ok(())
+}
+
+/// An eye anywhere, and what points mirror.
+fn mirrors_agree(
+    stages: &mut Stages,
+    receivers: &[Receiver],
+    must: &[Found],
+    name: &str,
+) -> Result<(), TestCaseError> {
+    let numbers = (0_u8..).take(must[0].len()).map(f32::from);
+    let skies: Vec<Sky> = numbers
+        .map(|n| [[n, 0.3, 7.0], [0.0, n * 0.7, 1e-3]])
+        .collect();
+    let eye = [0, 1, 2].map(|i| receivers[0].point[2 - i] / 2 + receivers[0].point[i] / 2);
+    let towards = |receiver: &Receiver| view([0, 1, 2].map(|i| eye[i] - receiver.point[i]));
+    let views: Vec<[i32; 3]> = receivers.iter().map(towards).collect();
+    let seen = stages.mirror(receivers, &views, &skies).expect("room");
+    for (at, seen) in seen.iter().enumerate() {
+        let hits = must[at].iter().zip(&skies);
+        let hits = hits.map(|((map, hits), sky)| (*map, *hits, sky));
+        let must = mirror(hits, receivers[at].normal, views[at]);
+        prop_assert_eq!(*seen, must, "{}: {:?}", name, receivers[at]);
     }
     Ok(())
 }

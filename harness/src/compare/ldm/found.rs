@@ -1,6 +1,6 @@
-//! Stages `neighbours`, `occlusion` and `environment`: what receivers find, and its sums.
+//! Stages `neighbours`, `occlusion`, `environment` and `mirror`: what receivers find, and its sums.
 
-use triptych_spec::ldm::{Hits, Open};
+use triptych_spec::ldm::{Hits, Mirrored, Open};
 use triptych_spec::rsm::Colour;
 
 use super::listed;
@@ -83,4 +83,27 @@ pub fn open(pixels: &[u32], spec: &[Open], seen: &[(u32, f32)]) -> Judgement {
 /// Stage `environment`: light within its bounds.
 pub fn light(pixels: &[u32], spec: &[Colour], seen: &[[f32; 3]]) -> Judgement {
     rsm::colours("receivers", spec, seen, |at| pixels.get(at).copied())
+}
+
+/// Stage `mirror`: the map, its side, what is found there and the light of it are the spec's, light
+/// to the bit.
+pub fn mirrored(pixels: &[u32], spec: &[Mirrored], seen: &[Mirrored]) -> Judgement {
+    let mut judgement = listed(Class::Exact, "receivers", spec.len(), seen.len());
+    let bits = |one: &Mirrored| one.light.map(f32::to_bits);
+    for (at, (must, is)) in spec.iter().zip(seen).enumerate() {
+        if must == is && bits(must) == bits(is) {
+            continue;
+        }
+        let same_way = (must.map, must.opposite) == (is.map, is.opposite);
+        // A direction and a radiance have no bound but their own value.
+        let cause = match (same_way, must.key == is.key, must.hit == is.hit) {
+            (true, false, _) => Cause::DepthKey,
+            (true, true, false) => Cause::Coverage,
+            _ => Cause::Interval,
+        };
+        judgement.differs(cause, pixels.get(at).copied(), || {
+            format!("receiver {at} mirrors {is:?}, must mirror {must:?}")
+        });
+    }
+    judgement
 }

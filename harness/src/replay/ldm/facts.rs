@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use triptych_spec::abuffer::NOTHING;
 use triptych_spec::bound::Bounded;
+use triptych_spec::ldm::Mirrored;
 
 use super::spec::LdmRun;
 use crate::replay::facts::{Facts, hash, runs};
@@ -28,7 +30,7 @@ fn counts(loaded: &Loaded, run: &LdmRun) -> Vec<(&'static str, String)> {
         "{} of {directions} directions by the receivers' normals",
         tally.maps
     );
-    vec![
+    let mut counts = vec![
         (
             "size",
             format!("{} x {}", setup.eye.size.width, setup.eye.size.height),
@@ -72,7 +74,11 @@ fn counts(loaded: &Loaded, run: &LdmRun) -> Vec<(&'static str, String)> {
             "hits",
             format!("{} before, {} behind", tally.before, tally.behind),
         ),
-    ]
+    ];
+    if !run.mirrored.is_empty() {
+        counts.push(("mirrored", mirrored(run)));
+    }
+    counts
 }
 
 fn hashes(run: &LdmRun) -> BTreeMap<&'static str, String> {
@@ -98,8 +104,39 @@ fn hashes(run: &LdmRun) -> BTreeMap<&'static str, String> {
     if run.lit {
         hashes.insert("picture", hash(run.picture().iter().flatten().map(fixed)));
     }
+    if !run.mirrored.is_empty() {
+        let words = run.turns.iter().flat_map(|turn| turn.mirrored.iter());
+        hashes.insert("mirrored", hash(words.flat_map(words_of)));
+    }
     hashes.extend(run.tally.hashes());
     hashes
+}
+
+/// What receivers see in the nearest direction of all rotations.
+fn mirrored(run: &LdmRun) -> String {
+    let count = |holds: fn(&Mirrored) -> bool| run.mirrored.iter().filter(|m| holds(m)).count();
+    format!(
+        "{} see something, {} nothing, {} have no direction",
+        count(|m| m.hit.is_some()),
+        count(|m| m.map.is_some() && m.hit.is_none()),
+        count(|m| m.map.is_none())
+    )
+}
+
+fn words_of(mirrored: &Mirrored) -> [u32; 7] {
+    let [r, g, b] = mirrored.light.map(f32::to_bits);
+    let some = |number: Option<u32>| number.unwrap_or(NOTHING);
+    let key = mirrored.key.cast_unsigned();
+    let map = some(mirrored.map);
+    [
+        map,
+        mirrored.opposite.into(),
+        key,
+        some(mirrored.hit),
+        r,
+        g,
+        b,
+    ]
 }
 
 /// In steps of 2^-16: an integer.

@@ -1,5 +1,6 @@
 //! A GPU leg of a scene of maps: every stage from the spec's input, then all of the device's own.
 
+mod mirror;
 mod own;
 
 use std::time::Duration;
@@ -62,6 +63,7 @@ impl LdmLeg<'_> {
             stages.give_layers(&turn.layers)?;
             self.found(turn, &mut stages, &mut judged)?;
             self.sums(turn, &mut stages, &mut judged)?;
+            self.reflections(turn, &mut stages, &mut judged)?;
         }
         judged.rows(&self.spec.label, &self.label(), rows);
         if self.spec.value.turns.is_empty() {

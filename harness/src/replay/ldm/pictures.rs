@@ -37,6 +37,20 @@ pub(super) fn spec(loaded: &Loaded, run: &LdmRun) -> Vec<Picture> {
             image: exposed(size, &lit, exposure(lit.iter().copied())),
         });
     }
+    if !run.mirrored.is_empty() {
+        let mut seen = vec![[0.0; 3]; size.pixels()];
+        for (asker, mirrored) in run.setup.receivers.iter().zip(&run.mirrored) {
+            seen[asker.pixel as usize] = mirrored.light.map(f64::from);
+        }
+        pictures.push(Picture {
+            title: "what is mirrored".into(),
+            caption: format!(
+                "The sky in the nearest of {maps} directions to each point's mirror direction; black \
+                 where anything is in the way."
+            ),
+            image: exposed(size, &seen, exposure(seen.iter().copied())),
+        });
+    }
     pictures.extend(cloud::picture(loaded, run));
     pictures
 }

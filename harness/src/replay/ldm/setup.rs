@@ -56,6 +56,8 @@ pub struct Asker {
     pub triangle: u32,
     /// The point as the stages take it.
     pub receiver: Receiver,
+    /// The unit vector to the eye ([`ldm::view`]).
+    pub view: Point,
 }
 
 /// The maps of a rotation, before anything is drawn.
@@ -92,7 +94,7 @@ impl Setup {
         }
         let offset = section.offset.0.max(OFFSET_MIN);
         let seen = gbuffer(&model, &eye, &off_faces(offset));
-        let receivers = receivers(&model, &seen.surfaces, |_| off(offset));
+        let receivers = receivers((&model, &eye), &seen.surfaces, |_| off(offset));
         let normals = receivers.iter().map(|r| r.receiver.normal).collect();
         let falloff = match section.far {
             None => Falloff::None,
@@ -156,7 +158,7 @@ impl Setup {
     /// Who asks where a device sees these surfaces, which may stray from the spec's: a point that
     /// is another one is as much farther off its surface, as far as a receiver can say.
     pub(super) fn receivers_of(&self, surfaces: &[Option<Surface>]) -> Vec<Asker> {
-        receivers(&self.model, surfaces, |pixel| {
+        receivers((&self.model, &self.eye), surfaces, |pixel| {
             let strays = self.seen.stray[pixel].into_iter().max().unwrap_or(0);
             match surfaces[pixel] == self.seen.surfaces[pixel] {
                 true => off(self.offset),
@@ -211,7 +213,11 @@ pub(super) fn off_faces(offset: u32) -> Parameters {
 }
 
 /// The points that pixels see, each off its surface by so many steps along an axis at most.
-fn receivers(model: &Model, seen: &[Option<Surface>], off: impl Fn(usize) -> u32) -> Vec<Asker> {
+fn receivers(
+    (model, eye): (&Model, &View),
+    seen: &[Option<Surface>],
+    off: impl Fn(usize) -> u32,
+) -> Vec<Asker> {
     let asker = |(pixel, surface): (u32, &Option<Surface>)| {
         let surface = surface.as_ref()?;
         let normal = model.face(surface.triangle).coarse;
@@ -223,6 +229,7 @@ fn receivers(model: &Model, seen: &[Option<Surface>], off: impl Fn(usize) -> u32
                 normal: normal.map(|c| c * surface.side),
                 off: off(pixel as usize),
             },
+            view: ldm::view(eye.viewpoint.from(surface.point)),
         })
     };
     (0..).zip(seen).filter_map(asker).collect()

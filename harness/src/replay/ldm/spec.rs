@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use triptych_spec::bound::{Bounded, Real};
 use triptych_spec::ldm::{
-    self, Hits, Layers, Map, Maps, Open, environment, layers, neighbours, occlusion, openness,
-    weight,
+    self, Hits, Layers, Map, Maps, Mirrored, Open, environment, layers, mirror, nearness,
+    neighbours, occlusion, openness, weight,
 };
 use triptych_spec::rsm::{Colour, DARK};
 
@@ -32,6 +32,9 @@ pub struct LdmRun {
     pub light: Vec<Colour>,
     /// Whether there is a sky, and so light.
     pub lit: bool,
+    /// What each receiver mirrors, in the nearest direction of all rotations; nothing if nothing
+    /// mirrors.
+    pub mirrored: Vec<Mirrored>,
     /// Linear colour where nothing is seen.
     pub background: [f32; 3],
     /// What was counted, and hashed where it is not held.
@@ -54,6 +57,8 @@ pub struct LdmTurn {
     pub open: Vec<Open>,
     /// Irradiance over pi of each receiver; nothing without a sky.
     pub light: Vec<Colour>,
+    /// What each receiver mirrors; nothing if nothing mirrors.
+    pub mirrored: Vec<Mirrored>,
 }
 
 /// Time of each stage.
@@ -67,6 +72,8 @@ pub struct Times {
     pub occlusion: Duration,
     /// Stage environment.
     pub environment: Duration,
+    /// Stage mirror.
+    pub mirror: Duration,
 }
 
 impl LdmRun {
@@ -88,13 +95,14 @@ impl LdmRun {
         limits::check(&setup.blockers, &turns)?;
         let mut tally = Tally::default();
         let mut times = Times::default();
-        let lit = plan.skipped("environment").is_none();
-        let render = |turn| render(&setup, turn, lit, &mut tally, &mut times);
+        let [lit, mirrors] = ["environment", "mirror"].map(|name| plan.skipped(name).is_none());
+        let render = |turn| render(&setup, turn, [lit, mirrors], &mut tally, &mut times);
         let turns: Vec<LdmTurn> = turns.into_iter().map(render).collect::<Result<_, _>>()?;
         let (open, light) = summed(&turns, setup.receivers.len());
         let directions = setup.directions * setup.rotations;
         Ok(Self {
             openness: open.iter().map(|o| openness(o, directions)).collect(),
+            mirrored: nearest(&setup, &turns),
             background: loaded.scene.background,
             open,
             light,
@@ -150,6 +158,15 @@ impl LdmTurn {
         maps.map(|map| (map, neighbours(&self.maps, map, &self.layers, receiver)))
     }
 
+    /// What was found in all maps, with the light from both sides of each.
+    pub fn all_hits<'t>(
+        &'t self,
+        found: &'t [(&'t Map, Hits)],
+    ) -> impl Iterator<Item = (&'t Map, Hits, &'t ldm::Sky)> {
+        let of = found.iter().zip(&self.sky);
+        of.map(|((map, hits), sky)| (*map, *hits, sky))
+    }
+
     /// What was found in the maps that light comes through, with the light.
     pub fn lit_hits<'t>(
         &'t self,
@@ -166,7 +183,7 @@ impl LdmTurn {
 fn render(
     setup: &Setup,
     turn: Turn,
-    with_light: bool,
+    [with_light, mirrors]: [bool; 2],
     tally: &mut Tally,
     times: &mut Times,
 ) -> Result<LdmTurn, Mistake> {
@@ -183,6 +200,7 @@ fn render(
         lit,
         open: Vec::with_capacity(setup.receivers.len()),
         light: Vec::new(),
+        mirrored: Vec::new(),
     };
     for asker in &setup.receivers {
         let receiver = &asker.receiver;
@@ -196,13 +214,38 @@ fn render(
             let lit = turn.lit_hits(&found);
             timed(|| environment(lit, receiver.normal, setup.directions))
         });
+        let mirrored = mirrors.then(|| {
+            let all = turn.all_hits(&found);
+            timed(|| mirror(all, receiver.normal, asker.view))
+        });
         turn.open.push(open);
         if let Some((light, at)) = light {
             times.environment += at;
             turn.light.push(light);
         }
+        if let Some((mirrored, at)) = mirrored {
+            times.mirror += at;
+            turn.mirrored.push(mirrored);
+        }
     }
     Ok(turn)
+}
+
+/// What is mirrored in the nearest direction of all rotations; of equals in the first.
+fn nearest(setup: &Setup, turns: &[LdmTurn]) -> Vec<Mirrored> {
+    let near = |turn: &LdmTurn, receiver: usize| {
+        let (asker, found) = (&setup.receivers[receiver], turn.mirrored[receiver]);
+        let map = &turn.maps.maps[found.map? as usize];
+        let near = nearness(map, asker.receiver.normal, asker.view)?;
+        Some((near, found))
+    };
+    let asked = turns.first().map_or(0, |turn| turn.mirrored.len());
+    let nearest = |receiver| {
+        let all = turns.iter().filter_map(|turn| near(turn, receiver));
+        let nearer = all.reduce(|best, one| if one.0 > best.0 { one } else { best });
+        nearer.map_or(Mirrored::default(), |(_, found)| found)
+    };
+    (0..asked).map(nearest).collect()
 }
 
 /// Sums over rotations: what is open, and the mean of the light.

@@ -82,7 +82,12 @@ fn chains_map_by_map() {
     let check = everywhere((&maps, &mesh), 8 * most - 1, |stages, name| {
         let refused = stages.chain(total, |_, _| true).map(|_| ());
         let words = refused.expect_err("a map's entries").to_string();
-        prop_assert!(words.contains("entries of a map's lists"), "{}: {}", name, words);
+        prop_assert!(
+            words.contains("entries of a map's lists"),
+            "{}: {}",
+            name,
+            words
+        );
         Ok(())
     });
     check.unwrap();

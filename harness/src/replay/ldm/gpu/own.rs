@@ -131,6 +131,9 @@ impl LdmLeg<'_> {
             let sky = (&turn.sky[..], &turn.lit[..]);
             sums.light = stages.environment_onto(&sums.light, &own, sky)?;
         }
+        if let Some(judgement) = self.own_reflections(turn, askers, &mut stages)? {
+            judged.part(STAGE, judgement);
+        }
         Ok(true)
     }
 
