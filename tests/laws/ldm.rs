@@ -18,6 +18,8 @@ mod light;
 mod loose;
 #[path = "ldm/maps.rs"]
 mod maps;
+#[path = "ldm/orders.rs"]
+mod orders;
 #[path = "ldm/places.rs"]
 mod places;
 #[path = "ldm/symmetry.rs"]
