@@ -19,7 +19,9 @@ mod loose;
 #[path = "ldm/maps.rs"]
 mod maps;
 #[path = "ldm/mirror.rs"]
+#[path = "ldm/orders.rs"]
 mod mirror;
+mod orders;
 #[path = "ldm/places.rs"]
 mod places;
 #[path = "ldm/symmetry.rs"]

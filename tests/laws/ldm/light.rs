@@ -1,9 +1,6 @@
-//! What is open around a point: furnaces, walls, rays, and skies.
+//! What is open around a point: furnaces, walls, and skies.
 
-use triptych_spec::grid::ray::Ray;
-use triptych_spec::grid::resolution::Resolution;
-use triptych_spec::grid::trace::blocked;
-use triptych_spec::grid::{Blockers, Grid, Membership};
+use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{
     Falloff, Hits, Layers, Map, Maps, Open, Receiver, Sky, environment, layers, neighbours,
     occlusion, openness, weight,
@@ -13,7 +10,11 @@ use super::directions::FURNACE;
 use super::{empty, maps_of, normal_of, quad, sphere};
 
 /// What a receiver finds in all maps.
-fn found<'m>(maps: &'m Maps, layers: &Layers, receiver: &Receiver) -> Vec<(&'m Map, Hits)> {
+pub(super) fn found<'m>(
+    maps: &'m Maps,
+    layers: &Layers,
+    receiver: &Receiver,
+) -> Vec<(&'m Map, Hits)> {
     let hit = |map: &'m Map| (map, neighbours(maps, map, layers, receiver));
     maps.maps.iter().map(hit).collect()
 }
@@ -23,7 +24,7 @@ fn open(maps: &Maps, layers: &Layers, receiver: &Receiver, falloff: Falloff) -> 
     occlusion(found.into_iter(), receiver.normal, falloff)
 }
 
-fn part(maps: &Maps, layers: &Layers, receiver: &Receiver, falloff: Falloff) -> f64 {
+pub(super) fn part(maps: &Maps, layers: &Layers, receiver: &Receiver, falloff: Falloff) -> f64 {
     let count = u32::try_from(maps.maps.len()).unwrap();
     openness(&open(maps, layers, receiver, falloff), count).value
 }
@@ -141,56 +142,6 @@ pub(super) fn ball() -> (Blockers, Vec<Receiver>) {
         ..floor
     });
     (mesh, receivers.collect())
-}
-
-/// What rays in the same directions find, exactly.
-fn by_rays(mesh: &Blockers, grid: &Grid, maps: &Maps, receiver: &Receiver) -> f64 {
-    let mut open = 0.0;
-    for map in &maps.maps {
-        let weight = weight(map, receiver.normal);
-        #[expect(clippy::cast_possible_truncation, reason = "within the lattice")]
-        let along = map
-            .direction
-            .map(|c| (c * 8e6 * f64::from(weight.signum())).round() as i32);
-        let mut start = receiver.point;
-        start[2] += 2;
-        let ray = Ray {
-            origin: start,
-            direction: along,
-            segment: false,
-        };
-        if !blocked(grid, mesh, ray) {
-            open += f64::from(weight.unsigned_abs());
-        }
-    }
-    open * 2.0 / maps.maps.len() as f64 / 524_288.0
-}
-
-/// Against exact rays in the same directions the error falls as pixels do; against what it is at
-/// the finest, resolution is all that is wrong.
-#[test]
-fn finer_maps_converge_to_rays() {
-    let (mesh, receivers) = ball();
-    let grid = Grid::build(&mesh, Resolution::FromScene, Membership::Box).unwrap();
-    let mut errors = Vec::new();
-    for resolution in [25, 50, 100, 200, 400] {
-        let maps = maps_of(&mesh, 64, resolution, 0);
-        let layers = layers(&maps, &mesh).unwrap();
-        let off = |receiver: &Receiver| {
-            let rays = by_rays(&mesh, &grid, &maps, receiver);
-            (part(&maps, &layers, receiver, Falloff::None) - rays).abs()
-        };
-        let sum: f64 = receivers.iter().map(off).sum();
-        errors.push(sum / receivers.len() as f64);
-    }
-    // About of first order: over a factor of 16 in pixels, at least 5 in error; never much worse
-    // than before.
-    assert!(errors[4] < errors[0] / 5.0, "{errors:?}");
-    assert!(
-        errors.windows(2).all(|pair| pair[1] < 1.3 * pair[0]),
-        "{errors:?}"
-    );
-    assert!(errors[0] > 0.0 && errors[4] < 0.01, "{errors:?}");
 }
 
 /// A sky of one colour is what is open; one that grows with height gives two thirds of its slope.

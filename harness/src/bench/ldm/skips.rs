@@ -11,6 +11,7 @@
 //!
 //! How many lists there are of which length is counted.
 
+mod built;
 mod measure;
 mod patch;
 mod table;

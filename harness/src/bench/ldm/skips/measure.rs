@@ -5,22 +5,15 @@ use triptych_gpu::ldm::{ChainSpan, Question, Span, Timed, TimedChains};
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{Layers, Maps};
 
-use super::super::super::Spread;
 use super::super::super::legs::Station;
 use super::super::case::Case;
 use super::super::gpu::leg;
 use super::super::judge::{Made, check_chains, check_sums, made, opened, words};
 use super::super::rounds::{Frame, Rounds, part, rounds, spread};
+use super::built::{Built, skip};
 use super::patch::{CHAINS_OF_ONE, RUNS_OF_ONE, patched};
-use super::{ALL_KEYS, Side, Skip, Skips, lengths};
+use super::{ALL_KEYS, Skip, Skips, lengths};
 use crate::replay::ldm::Turn;
-
-/// Maps with their lists.
-#[derive(Clone, Copy)]
-struct Built<'m> {
-    maps: &'m Maps,
-    made: &'m Made,
-}
 
 /// Where and of what.
 struct Bench<'b> {
@@ -230,81 +223,6 @@ impl Bench<'_> {
 
     fn rounds(&self, frames: [Frame<'_>; 2]) -> Result<Vec<Rounds>, String> {
         rounds(self.station, &frames, self.runs).map_err(words)
-    }
-}
-
-impl Built<'_> {
-    /// All of the maps.
-    fn side(self) -> Side {
-        self.lit(&vec![true; self.maps.maps.len()])
-    }
-
-    /// Some of the maps.
-    fn lit(self, lit: &[bool]) -> Side {
-        let offsets = &self.made.layers.offsets;
-        let mut side = NONE;
-        for (map, _) in self.maps.maps.iter().zip(lit).filter(|(_, lit)| **lit) {
-            let pixels = map.size.width * map.size.height;
-            let [start, end] = [map.first, map.first + pixels].map(|at| offsets[at as usize]);
-            side.maps += 1;
-            side.pixels += u64::from(pixels);
-            side.keys += u64::from(end - start);
-        }
-        side
-    }
-
-    /// Lists of so many keys at least.
-    fn lists(self, least: u32) -> Side {
-        let lengths = self
-            .made
-            .layers
-            .offsets
-            .windows(2)
-            .map(|run| run[1] - run[0]);
-        let mut side = Side {
-            maps: self.maps.maps.len() as u64,
-            ..NONE
-        };
-        for length in lengths.filter(|length| *length >= least) {
-            side.pixels += 1;
-            side.keys += u64::from(length);
-        }
-        side
-    }
-}
-
-const NONE: Side = Side {
-    maps: 0,
-    pixels: 0,
-    keys: 0,
-    time: Spread {
-        median: 0.0,
-        min: 0.0,
-        max: 0.0,
-    },
-};
-
-/// A row of two frames in turn.
-fn skip(
-    (what, part): (&'static str, &'static str),
-    [planned, full]: [Side; 2],
-    times: &[Rounds],
-    of: impl Fn(&Rounds) -> Spread,
-) -> Skip {
-    let rounds = times[0].iter().zip(&times[1]);
-    let one = |round: &Vec<f64>| of(&vec![round.clone()]).median;
-    Skip {
-        what,
-        part,
-        ratio: Spread::of(rounds.map(|(planned, full)| one(full) / one(planned))),
-        planned: Side {
-            time: of(&times[0]),
-            ..planned
-        },
-        full: Side {
-            time: of(&times[1]),
-            ..full
-        },
     }
 }
 
