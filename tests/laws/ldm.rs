@@ -19,8 +19,8 @@ mod loose;
 #[path = "ldm/maps.rs"]
 mod maps;
 #[path = "ldm/mirror.rs"]
-#[path = "ldm/orders.rs"]
 mod mirror;
+#[path = "ldm/orders.rs"]
 mod orders;
 #[path = "ldm/places.rs"]
 mod places;

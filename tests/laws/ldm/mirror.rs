@@ -161,8 +161,8 @@ fn a_floor_mirrors_what_lines_meet() {
     let layers = layers(&maps, &mesh).unwrap();
     let eye: Point = [-3_000_000, 200_000, 4_000_000];
     let normal = normal_of(&mesh, 0);
-    // A segment spans 1/32 of a half turn, or 1/24 of it around: at most so much, across a face.
-    let inner = radius * (1.0 - (std::f64::consts::PI / 32.0).powi(2));
+    // Half a face spans pi / 48 around and pi / 64 from pole to pole: together (1 - cos) is below 0.004.
+    let inner = radius * (1.0 - 0.004);
     let pixel = maps.pixel * std::f64::consts::FRAC_1_SQRT_2;
     let (mut sees, mut open) = (0, 0);
     for n in 0..900 {

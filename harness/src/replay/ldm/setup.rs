@@ -18,6 +18,11 @@ use crate::replay::placed;
 use crate::replay::spec::FRAGMENTS_MAX;
 use crate::scene::{Loaded, Mistake};
 
+/// How far from the spec's a device's point may be in maps that are cropped, in steps along each axis:
+/// half of the narrowest pixel. More would leave little to crop where a single pixel sees a triangle
+/// edge-on.
+const MARGIN: i32 = 64;
+
 /// What all rotations share.
 pub struct Setup {
     /// World space and the lattice: around everything, and around a perspective eye.
@@ -167,15 +172,26 @@ impl Setup {
         })
     }
 
-    /// Maps of what blocks. With `skip`, as far as somebody asks, or may by the points of a device
-    /// ([`Gbuffer::stray`]).
+    /// How many of a device's points lie farther from the spec's than maps are cropped for. Bounds
+    /// let them, where triangles are long and seen edge-on; adapters are steps away.
+    pub(super) fn beyond(&self, askers: &[Asker]) -> usize {
+        let both = askers.iter().zip(&self.receivers);
+        let apart = |(a, b): &(&Asker, &Asker)| {
+            let [a, b] = [a, b].map(|asker| asker.receiver.point);
+            (0..3).any(|i| (a[i] - b[i]).abs() > MARGIN)
+        };
+        both.filter(apart).count()
+    }
+
+    /// Maps of what blocks. With `skip`, as far as somebody asks, or may by the points of a device.
     pub(crate) fn maps(&self, directions: &[[f64; 3]], skip: bool) -> Result<Maps, String> {
         let corners = self.blockers.triangles.iter().flatten();
         let corners = corners.map(|row| self.blockers.vertices[*row as usize]);
         let blockers = bounds(corners).unwrap_or([[0; 3]; 2]);
         let asking = self.receivers.iter().flat_map(|asker| {
             let (point, strays) = (asker.receiver.point, &self.seen.stray[asker.pixel as usize]);
-            [-1, 1].map(|way| [0, 1, 2].map(|i| point[i] + way * strays[i].cast_signed()))
+            let strays = strays.map(|steps| steps.cast_signed().min(MARGIN));
+            [-1, 1].map(|way| [0, 1, 2].map(|i| point[i] + way * strays[i]))
         });
         let asking = bounds(asking).filter(|_| skip).unwrap_or(blockers);
         Maps::new(directions, blockers, asking, self.resolution).map_err(|e| e.to_string())

@@ -101,8 +101,8 @@ fn receivers_are_as_far_off_their_faces_as_they_say() {
 fn what_is_left_out_adds_nothing() {
     let dark = "sky.gradient = { zenith = [1, 0.5, 0.25], nadir = [0, 0, 0], up = [1, 0, 0] }";
     for keys in ["", "far = 1", dark, "rotations = 3"] {
-        let loaded = scene(&format!("directions = 62\nresolution = 24\n{keys}"), BOX);
-        let flat = scene(&format!("directions = 62\nresolution = 24\n{keys}"), "");
+        let keys = format!("directions = 62\nresolution = 24\nmirror = true\n{keys}");
+        let [loaded, flat] = [BOX, ""].map(|mesh| scene(&keys, mesh));
         for loaded in [&loaded, &flat] {
             let [skipped, all] = [true, false].map(|skip| run(loaded, skip));
             let whole = |run: &LdmRun| run.open.iter().map(|o| o.whole).collect::<Vec<_>>();
@@ -118,6 +118,13 @@ fn what_is_left_out_adds_nothing() {
                     .collect::<Vec<_>>()
             };
             assert!(!skipped.lit || lit(&skipped) == lit(&all), "{keys}");
+            let mirrored = |run: &LdmRun| {
+                let all = run.mirrored.iter();
+                all.map(|m| (m.opposite, m.key, m.hit, m.light))
+                    .collect::<Vec<_>>()
+            };
+            assert_eq!(mirrored(&skipped), mirrored(&all), "{keys}");
+            assert!(mirrored(&all).len() == all.open.len());
             assert_eq!(all.tally.maps, 62 * u64::from(all.setup.rotations));
         }
         let flat = run(&flat, true);
@@ -165,6 +172,12 @@ fn nothing_to_see_and_nothing_in_the_way() {
         plan.skipped("environment").as_deref(),
         Some("plan: there is no sky")
     );
+    assert_eq!(
+        plan.skipped("mirror").as_deref(),
+        Some("plan: nothing mirrors")
+    );
+    let plan = LdmPlan::new(&scene("mirror = true", ""), true);
+    assert_eq!(plan.skipped("mirror"), None, "with or without a sky");
     let plan = LdmPlan::new(&dark, false);
     assert_eq!(plan.skipped("environment"), None);
 }

@@ -18,6 +18,7 @@ use crate::replay::judged::Judged;
 use crate::replay::ldm::{Asker, LdmTurn};
 use crate::replay::rows::Rows;
 use crate::replay::visible::visible;
+use crate::row::Class;
 
 /// What the rows are about.
 const STAGE: &str = "end to end";
@@ -32,7 +33,7 @@ impl LdmLeg<'_> {
         let turns = &self.spec.value.turns;
         let askers = match turns.is_empty() {
             true => None,
-            false => self.points(&mut judged)?,
+            false => self.points(&mut judged, rows)?,
         };
         let made = askers.map_or(Ok(Vec::new()), |askers| self.turns(&askers, &mut judged));
         judged.rows(&self.spec.label, &self.label(), rows);
@@ -67,8 +68,8 @@ impl LdmLeg<'_> {
         Ok(made)
     }
 
-    /// Who asks, by the device; `None` if its points are not what they may be.
-    fn points(&self, judged: &mut Judged) -> Result<Option<Vec<Asker>>, GpuError> {
+    /// Who asks, by the device; `None` if its points are not what they may be, or not where maps are.
+    fn points(&self, judged: &mut Judged, rows: &mut Rows) -> Result<Option<Vec<Asker>>, GpuError> {
         let setup = &self.spec.value.setup;
         let (view, model) = (&setup.eye, &setup.model);
         let nearest = visible((self.adapter, self.path), view, model)?;
@@ -87,6 +88,13 @@ impl LdmLeg<'_> {
             return Ok(None);
         }
         let askers = setup.receivers_of(&surfaces);
+        let beyond = setup.beyond(&askers);
+        if beyond > 0 {
+            judged.part(STAGE, judgement);
+            let reason = format!("{beyond} points lie beyond what maps are cropped to");
+            rows.skip(STAGE, &self.spec.label, &self.label(), Class::Exact, reason);
+            return Ok(None);
+        }
         let others = askers.iter().zip(&setup.receivers).filter(|(a, b)| a != b);
         judgement.note = format!(
             "{} of {} points are others than the spec's",
