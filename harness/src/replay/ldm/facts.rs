@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::bound::Bounded;
-use triptych_spec::ldm::Mirrored;
+use triptych_spec::ldm::{Mirrored, openness};
 
 use super::spec::LdmRun;
 use crate::replay::facts::{Facts, hash, runs};
@@ -75,6 +75,9 @@ fn counts(loaded: &Loaded, run: &LdmRun) -> Vec<(&'static str, String)> {
             format!("{} before, {} behind", tally.before, tally.behind),
         ),
     ];
+    if let Some(flicker) = flicker(run) {
+        counts.push(("flicker", format!("{flicker:.1e} from one set to the next")));
+    }
     if !run.mirrored.is_empty() {
         counts.push(("mirrored", mirrored(run)));
     }
@@ -110,6 +113,18 @@ fn hashes(run: &LdmRun) -> BTreeMap<&'static str, String> {
     }
     hashes.extend(run.tally.hashes());
     hashes
+}
+
+/// By how much what is open over a receiver changes from one rotation to the next, which is what
+/// fixed directions would save (paper section 3.2): root of the mean square. `None` of a single set.
+fn flicker(run: &LdmRun) -> Option<f64> {
+    let value = |open| openness(open, run.setup.directions).value;
+    let pairs = run.turns.iter().zip(run.turns.iter().skip(1));
+    let changes = pairs.flat_map(|(a, b)| a.open.iter().zip(&b.open));
+    let changes = changes.map(|(a, b)| value(a) - value(b));
+    let squares: Vec<f64> = changes.map(|change| change * change).collect();
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    (!squares.is_empty()).then(|| libm::sqrt(mean))
 }
 
 /// What receivers see in the nearest direction of all rotations.
