@@ -6,6 +6,7 @@
 //! over its bound, the share in class edge, what went unjudged, and what a leg refused.
 //! [`judge`] says what must hold of them; module `files` writes them down.
 
+mod extremes;
 mod files;
 pub mod grid;
 mod judge;
@@ -20,53 +21,77 @@ mod table;
 mod tests;
 mod triangles;
 
+pub use extremes::{Extremes, Pages};
 pub use files::{Written, write};
-pub use judge::{USEFUL, Wrong, judge, useless};
+pub use judge::{USEFUL, Wrong};
 pub use measure::{Bound, Measured, bounded};
 pub use numbers::Numbers;
 pub use shot::{Edge, Shot, Vertex};
-pub use sweeps::{Step, Sweep, select, sweeps};
-pub use table::{Table, line};
+pub use sweeps::{Step, Sweep, select};
+pub use table::{Lines, Table};
 
 use std::path::Path;
 
-use crate::corpus::Entry;
 use crate::error::InputError;
 use crate::replay::gpu::Adapter;
 use crate::replay::{Options, replay};
-use crate::scene::{LoadError, load_entry};
+use crate::report::RunInfo;
+use crate::row::Row;
+use extremes::{entry_of, folder_of, load};
+use files::pages;
+use judge::{judge, useless};
+use sweeps::sweeps;
 
 /// The family that steps are of: the one that runs every stage.
 const FAMILY: &str = "abuffer";
 
-/// Writes a step's scene to `folder/SWEEP/STEP`, and replays it through all legs.
-///
-/// # Errors
-/// A folder that cannot be written, or what keeps a scene from being replayed.
-pub fn run(
-    sweep: &Sweep,
-    step: &Step,
-    folder: &Path,
-    adapters: &[Adapter],
-    options: &Options,
-) -> Result<Measured, InputError> {
-    let folder = folder.join(sweep.name).join(&step.label);
-    let path = step.shot.write(&folder)?;
-    let entry = Entry {
-        name: format!("stress/{}/{}", sweep.name, step.label),
-        family: FAMILY.to_owned(),
-        path,
-    };
-    let loaded = load_entry(&entry, None).map_err(|error| match error {
-        LoadError::Input(error) => error,
-        missing @ LoadError::Missing { .. } => InputError::new(&entry.path, missing.to_string()),
-    })?;
-    let outcome = replay(&entry, adapters, options)?;
-    Ok(Measured::new(
-        sweep.name,
-        step,
-        &entry,
-        outcome.rows,
-        Numbers::of(&loaded.scene),
-    ))
+/// Triangles through every stage from vertices to the picture.
+pub struct Frame;
+
+impl Extremes for Frame {
+    type Shot = Shot;
+    type Measured = Measured;
+    type Table = Table;
+    const ENDING: &'static str = "";
+
+    fn sweeps() -> Vec<Sweep<Shot>> {
+        sweeps()
+    }
+
+    /// Writes a step's scene to `folder/SWEEP/STEP`, and replays it through all legs.
+    fn run(
+        sweep: &Sweep<Shot>,
+        step: &Step<Shot>,
+        folder: &Path,
+        adapters: &[Adapter],
+        options: &Options,
+    ) -> Result<Measured, InputError> {
+        let path = step.shot.write(&folder_of(folder, sweep, step))?;
+        let entry = entry_of::<Frame>(FAMILY, sweep, step, path);
+        let loaded = load(&entry)?.map_err(|words| InputError::new(&entry.path, words))?;
+        let outcome = replay(&entry, adapters, options)?;
+        Ok(Measured::new(
+            sweep.name,
+            step,
+            &entry,
+            outcome.rows,
+            Numbers::of(&loaded.scene),
+        ))
+    }
+
+    fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
+        judge(measured, legs)
+    }
+
+    fn useless(all: &[Measured]) -> Vec<Wrong> {
+        useless(all)
+    }
+
+    fn rows(measured: &Measured) -> (&Path, &[Row]) {
+        (&measured.path, &measured.rows)
+    }
+
+    fn pages(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> Pages {
+        pages(run, sweeps, all, wrong)
+    }
 }

@@ -58,153 +58,148 @@ fn a_sweep_is_printed_and_written() {
     assert!(again.contains("scenes/offset/2^0/scene.toml"), "{again}");
 }
 
-#[test]
-fn grids_are_driven_to_their_extremes() {
-    let place = Place::new("stress-grid");
-    let arguments = [
-        "bench",
-        "grid",
-        "--stress",
-        "offset",
-        "--adapter",
-        "swiftshader",
-    ];
-    let files = ["--json", "o.jsonl", "--csv", "o.csv", "--out", "out"];
-    let ran = place.run(&[&arguments[..], &files].concat()).expect(0);
-    assert_eq!(ran.stderr, "");
-    let lines = ran.stdout.lines().map(str::trim_start);
-    let steps = lines.filter(|line| line.starts_with("1e")).count();
-    assert_eq!(steps, 13, "a line for each step:\n{}", ran.stdout);
-    let refusal = "refused: `2.0000000000000002e39` is not finite";
-    assert!(ran.stdout.contains(refusal), "{}", ran.stdout);
+/// What a sweep of a family said, on one adapter.
+struct Driven {
+    place: Place,
+    shown: String,
+    rows: Vec<serde_json::Value>,
+    lines: usize,
+    page: String,
+}
 
+/// Runs a sweep that must hold; each of its legs must be heard of so often.
+fn driven(family: &str, sweep: &str, (legs, steps): (&[&str], usize)) -> Driven {
+    let place = Place::new(&format!("stress-{family}"));
+    let arguments = ["bench", family, "--stress", sweep];
+    let files = ["--json", "o.jsonl", "--csv", "o.csv", "--out", "out"];
+    let adapter = ["--adapter", "swiftshader"];
+    let ran = place
+        .run(&[&arguments[..], &adapter, &files].concat())
+        .expect(0);
+    assert_eq!(ran.stderr, "", "nothing is wrong");
     let mut rows = json(&place.root.join("o.jsonl"));
     let summary = rows.pop().expect("a summary");
-    assert_eq!(count(&summary, "diverging"), 0);
-    for leg in ["every triangle", "embree", "gpu@SwiftShader/compute"] {
-        let of_leg = rows.iter().filter(|r| r["b"] == leg);
-        assert!(of_leg.count() >= 12, "{leg}: each step that is not refused");
+    assert_eq!(count(&summary, "diverging"), 0, "{summary}");
+    for leg in legs {
+        let of_leg = rows.iter().filter(|r| r["b"] == *leg);
+        assert!(
+            of_leg.count() >= steps,
+            "{leg}: each step that is not refused"
+        );
     }
     let table = fs::read_to_string(place.root.join("o.csv")).expect("a table");
-    let lines = table.lines().count();
-    assert_eq!(lines, rows.len() + 2, "a line each, names, and a refusal");
     let page = ran.stdout.lines().last().expect("where the page lies");
     let page = page.strip_prefix("Report: ").expect("where the page lies");
     let page = fs::read_to_string(place.root.join(page)).expect("a page");
-    for part in [
+    Driven {
+        lines: table.lines().count(),
+        shown: ran.stdout,
+        place,
+        rows,
+        page,
+    }
+}
+
+impl Driven {
+    /// How many lines start with one of these.
+    fn starting(&self, with: &[&str]) -> usize {
+        let lines = self.shown.lines().map(str::trim_start);
+        let starts = |line: &&str| with.iter().any(|n| line.starts_with(n));
+        lines.filter(starts).count()
+    }
+
+    fn page_has(&self, parts: &[&str]) {
+        for part in parts {
+            assert!(self.page.contains(part), "{} lacks {part}", self.page);
+        }
+    }
+
+    /// Every step can be replayed by itself.
+    fn replays(&self, scene: &str) {
+        let replay = ["replay", scene, "--leg", "embree", "--no-cache"];
+        self.place.run(&replay).expect(0);
+    }
+}
+
+#[test]
+fn grids_are_driven_to_their_extremes() {
+    let legs = ["every triangle", "embree", "gpu@SwiftShader/compute"];
+    let driven = driven("grid", "offset", (&legs, 12));
+    assert_eq!(
+        driven.starting(&["1e"]),
+        13,
+        "a line for each step:\n{}",
+        driven.shown
+    );
+    let refusal = "refused: `2.0000000000000002e39` is not finite";
+    assert!(driven.shown.contains(refusal), "{}", driven.shown);
+    assert_eq!(
+        driven.lines,
+        driven.rows.len() + 2,
+        "a line each, names, and a refusal"
+    );
+    driven.page_has(&[
         "# Stability of grids and rays, ",
         "| spec |",
         "The longest walk",
         "| 1e6 |",
-    ] {
-        assert!(page.contains(part), "{page} lacks {part}");
-    }
-    // Every step can be replayed by itself.
-    let scene = "out/scenes-grid/offset/1e4/scene.toml";
-    let replay = ["replay", scene, "--leg", "embree", "--no-cache"];
-    place.run(&replay).expect(0);
-}
-
-#[test]
-fn extremes_of_grids_have_their_own_help() {
-    let place = Place::new("stress-grid-help");
-    let ran = place
-        .run(&["bench", "grid", "--stress", "no-such"])
-        .expect(2);
-    assert_eq!(
-        ran.stderr,
-        "triptych: no-such: no sweep is called so; there are: aligned, cells, scale, offset, near, \
-         length, sliver, tiny, sparse\n"
-    );
-    let own = ["bench", "grid", "--stress", "--help"];
-    for arguments in [&own[..], &["bench", "grid", "--help"]] {
-        let help = place.run(arguments).expect(0);
-        assert!(help.stdout.contains("Examples:"), "{}", help.stdout);
-        assert!(
-            help.stdout.contains("bench grid --stress"),
-            "{}",
-            help.stdout
-        );
-    }
-    place
-        .run(&["bench", "grid", "dragon", "--stress"])
-        .expect(2);
+    ]);
+    driven.replays("out/scenes-grid/offset/1e4/scene.toml");
 }
 
 #[test]
 fn maps_are_driven_to_their_extremes() {
-    let place = Place::new("stress-ldm");
-    let arguments = [
-        "bench",
-        "ldm",
-        "--stress",
-        "convex",
-        "--adapter",
-        "swiftshader",
-    ];
-    let files = ["--json", "o.jsonl", "--csv", "o.csv", "--out", "out"];
-    let ran = place.run(&[&arguments[..], &files].concat()).expect(0);
-    assert_eq!(ran.stderr, "");
-    let lines = ran.stdout.lines().map(str::trim_start);
-    let steps = lines.filter(|line| {
-        ["8 ", "32 ", "128 ", "512 "]
-            .iter()
-            .any(|n| line.starts_with(n))
-    });
-    assert_eq!(steps.count(), 4, "a line for each step:\n{}", ran.stdout);
-
-    let mut rows = json(&place.root.join("o.jsonl"));
-    let summary = rows.pop().expect("a summary");
-    assert_eq!(count(&summary, "diverging"), 0);
-    for leg in ["embree", "gpu@SwiftShader/compute"] {
-        let of_leg = rows.iter().filter(|r| r["b"] == leg);
-        assert!(of_leg.count() >= 4, "{leg}: each step");
-    }
-    let table = fs::read_to_string(place.root.join("o.csv")).expect("a table");
+    let driven = driven("ldm", "convex", (&["embree", "gpu@SwiftShader/compute"], 4));
+    let steps = driven.starting(&["8 ", "32 ", "128 ", "512 "]);
+    assert_eq!(steps, 4, "a line for each step:\n{}", driven.shown);
     assert_eq!(
-        table.lines().count(),
-        rows.len() + 1,
+        driven.lines,
+        driven.rows.len() + 1,
         "a line each, and names"
     );
-    let page = ran.stdout.lines().last().expect("where the page lies");
-    let page = page.strip_prefix("Report: ").expect("where the page lies");
-    let page = fs::read_to_string(place.root.join(page)).expect("a page");
-    for part in [
+    driven.page_has(&[
         "# Stability of layered depth maps, ",
         "4 steps, ",
         "points find what they must",
         "| key | spec |",
         "| 512 |",
+    ]);
+    driven.replays("out/scenes-ldm/convex/32/scene.toml");
+}
+
+/// Extremes of a family have their own help, name their sweeps, and take no scene.
+fn has_own_help(family: &str, sweeps: &str, scene: &str) {
+    let place = Place::new(&format!("stress-{family}-help"));
+    let own = ["bench", family, "--stress"];
+    let ran = place.run(&[&own[..], &["no-such"]].concat()).expect(2);
+    assert_eq!(
+        ran.stderr,
+        format!("triptych: no-such: no sweep is called so; there are: {sweeps}\n"),
+        "{family}"
+    );
+    for arguments in [
+        &[&own[..], &["--help"]].concat()[..],
+        &["bench", family, "--help"],
     ] {
-        assert!(page.contains(part), "{page} lacks {part}");
+        let help = place.run(arguments).expect(0);
+        for part in ["Examples:", &format!("bench {family} --stress")] {
+            assert!(help.stdout.contains(part), "{}", help.stdout);
+        }
     }
-    // Every step can be replayed by itself.
-    let scene = "out/scenes-ldm/convex/32/scene.toml";
-    let replay = ["replay", scene, "--leg", "embree", "--no-cache"];
-    place.run(&replay).expect(0);
+    place.run(&["bench", family, scene, "--stress"]).expect(2);
+}
+
+#[test]
+fn extremes_of_grids_have_their_own_help() {
+    let sweeps = "aligned, cells, scale, offset, near, length, sliver, tiny, sparse";
+    has_own_help("grid", sweeps, "dragon");
 }
 
 #[test]
 fn extremes_of_maps_have_their_own_help() {
-    let place = Place::new("stress-ldm-help");
-    let ran = place
-        .run(&["bench", "ldm", "--stress", "no-such"])
-        .expect(2);
-    assert_eq!(
-        ran.stderr,
-        "triptych: no-such: no sweep is called so; there are: grazing, convex, slope, layers, \
-         resolution, directions, scale, offset, lattice, sliver, tiny\n"
-    );
-    let own = ["bench", "ldm", "--stress", "--help"];
-    for arguments in [&own[..], &["bench", "ldm", "--help"]] {
-        let help = place.run(arguments).expect(0);
-        for part in ["Examples:", "bench ldm --stress"] {
-            assert!(help.stdout.contains(part), "{}", help.stdout);
-        }
-    }
-    place
-        .run(&["bench", "ldm", "ldm/bunny", "--stress"])
-        .expect(2);
+    let sweeps = "grazing, convex, slope, layers, resolution, directions, scale, offset, lattice, \
+                  sliver, tiny";
+    has_own_help("ldm", sweeps, "ldm/bunny");
 }
 
 #[test]

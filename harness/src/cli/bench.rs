@@ -1,6 +1,7 @@
 //! `triptych bench`.
 
 pub(super) mod abuffer;
+mod extremes;
 mod files;
 mod grid;
 mod ldm;

@@ -4,13 +4,14 @@ use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::extremes::Pages;
 use super::judge::Wrong;
 use super::measure::{Bound, Measured, bounded, exceeds};
 use super::sweeps::Sweep;
-use super::table::{ABOVE, Table};
+use super::table::{Lines, Table};
 use crate::report::RunInfo;
 use crate::row::Row;
-use crate::text::{markdown as escaped, quoted};
+use crate::text::{count, markdown as escaped, quoted};
 
 /// Files that a run wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,22 +22,19 @@ pub struct Written {
     pub csv: PathBuf,
 }
 
+/// Both of what a run writes.
+pub(super) fn pages(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> Pages {
+    Pages {
+        page: markdown(run, sweeps, all, wrong),
+        table: csv(all),
+    }
+}
+
 /// Writes both, with the endings of their kinds after `stem`.
 ///
 /// # Errors
 /// A folder or file that cannot be written.
-pub fn write(
-    stem: &Path,
-    run: &RunInfo,
-    sweeps: &[Sweep],
-    all: &[Measured],
-    wrong: &[Wrong],
-) -> io::Result<Written> {
-    put(stem, &markdown(run, sweeps, all, wrong), &csv(all))
-}
-
-/// Writes what both hold.
-pub(super) fn put(stem: &Path, markdown: &str, csv: &str) -> io::Result<Written> {
+pub fn write(stem: &Path, pages: &Pages) -> io::Result<Written> {
     if let Some(folder) = stem.parent() {
         std::fs::create_dir_all(folder)?;
     }
@@ -49,8 +47,8 @@ pub(super) fn put(stem: &Path, markdown: &str, csv: &str) -> io::Result<Written>
         markdown: ending(".md"),
         csv: ending(".csv"),
     };
-    std::fs::write(&written.csv, csv)?;
-    std::fs::write(&written.markdown, markdown)?;
+    std::fs::write(&written.csv, &pages.table)?;
+    std::fs::write(&written.markdown, &pages.page)?;
     Ok(written)
 }
 
@@ -63,35 +61,45 @@ pub(super) fn csv(all: &[Measured]) -> String {
     for m in all {
         for row in &m.rows {
             let n = m.numbers;
-            let class = serde_json::to_string(&row.class).unwrap_or_default();
-            let cells = [
-                m.sweep.to_owned(),
-                m.step.clone(),
-                m.value.to_string(),
-                row.stage.clone(),
-                row.a.clone(),
-                row.b.clone(),
-                class.trim_matches('"').to_owned(),
-                row.unit.clone(),
-                row.compared.to_string(),
-                row.differ.to_string(),
-                row.unexplained.to_string(),
-                optional(row.error),
-                optional(row.error_over_bound),
-                row.admitted.to_string(),
-                row.admitted_share().to_string(),
+            let mut cells = vec![m.sweep.to_owned(), m.step.clone(), m.value.to_string()];
+            cells.extend(of_row(row));
+            cells.extend([
                 optional(row.admitted_budget),
                 n.vertices.to_string(),
                 n.unbounded.to_string(),
                 n.subnormal.to_string(),
                 n.overflow.to_string(),
                 row.skipped.clone().unwrap_or_default(),
-            ];
-            let cells = cells.each_ref().map(|cell| quoted(cell));
-            text += &(cells.join(",") + "\n");
+            ]);
+            text += &values(&cells);
         }
     }
     text
+}
+
+/// A line of values.
+pub(super) fn values(cells: &[String]) -> String {
+    let cells: Vec<_> = cells.iter().map(|cell| quoted(cell)).collect();
+    cells.join(",") + "\n"
+}
+
+/// What every row says: `stage` to `admitted_share`.
+pub(super) fn of_row(row: &Row) -> [String; 12] {
+    let class = serde_json::to_string(&row.class).unwrap_or_default();
+    [
+        row.stage.clone(),
+        row.a.clone(),
+        row.b.clone(),
+        class.trim_matches('"').to_owned(),
+        row.unit.clone(),
+        row.compared.to_string(),
+        row.differ.to_string(),
+        row.unexplained.to_string(),
+        optional(row.error),
+        optional(row.error_over_bound),
+        row.admitted.to_string(),
+        row.admitted_share().to_string(),
+    ]
 }
 
 pub(super) fn optional(number: Option<f64>) -> String {
@@ -119,28 +127,37 @@ pub(super) fn preamble(title: &str, run: &RunInfo) -> String {
     text
 }
 
-fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
-    let mut text = preamble("Stability", run);
-    let compared: u64 = all.iter().map(Measured::compared).sum();
-    let (steps, seconds) = (all.len(), run.seconds);
-    line(
-        &mut text,
-        format_args!(
-            "\n{steps} steps, {compared} items compared in {seconds:.0} s. {}",
-            match wrong.len() {
-                0 =>
-                    "Exact stages agree bit for bit at every step, and no error exceeds its bound."
-                        .to_owned(),
-                n => format!("{n} things do not hold:"),
-            }
-        ),
+/// How much was compared, and what does not hold; else that all is `sound`, in words.
+pub(super) fn summary(
+    run: &RunInfo,
+    (steps, compared): (usize, u64),
+    wrong: &[Wrong],
+    sound: &str,
+) -> String {
+    let verdict = match wrong.len() {
+        0 => sound.to_owned(),
+        n => format!("{n} things do not hold:"),
+    };
+    let mut text = format!(
+        "\n{steps} steps, {} items compared in {:.0} s. {verdict}\n",
+        count(compared),
+        run.seconds
     );
     for wrong in wrong {
         line(&mut text, format_args!("- {}", escaped(&wrong.to_string())));
     }
+    text
+}
+
+fn markdown(run: &RunInfo, sweeps: &[Sweep], all: &[Measured], wrong: &[Wrong]) -> String {
+    let mut text = preamble("Stability", run);
+    let compared = all.iter().map(Measured::compared).sum();
+    let sound = "Exact stages agree bit for bit at every step, and no error exceeds its bound.";
+    text += &summary(run, (all.len(), compared), wrong, sound);
     text += &largest(all);
     for sweep in sweeps {
-        text += &section(sweep, all);
+        let steps = all.iter().filter(|m| m.sweep == sweep.name);
+        text += &section::<Table, _>(sweep, steps);
     }
     text
 }
@@ -187,17 +204,20 @@ fn largest_of(all: &[Measured], stage: Bound, leg: &str) -> String {
     )
 }
 
-/// A sweep's table.
-fn section(sweep: &Sweep, all: &[Measured]) -> String {
-    let mut text = format!("\n## {}: {}\n\n{ABOVE}.\n\n", sweep.name, sweep.axis);
-    let names = Table::names();
+/// A sweep's table, of its own steps.
+pub(super) fn section<'m, T: Lines<Measured: 'm>, S>(
+    sweep: &Sweep<S>,
+    steps: impl Iterator<Item = &'m T::Measured>,
+) -> String {
+    let mut text = format!("\n## {}: {}\n\n{}.\n\n", sweep.name, sweep.axis, T::ABOVE);
+    let names = T::names();
     line(&mut text, format_args!("| {} |", names.join(" | ")));
     line(&mut text, format_args!("|{}", "---|".repeat(names.len())));
-    let mut table = Table::default();
-    for m in all.iter().filter(|m| m.sweep == sweep.name) {
-        let cells: Vec<String> = table.cells(m).iter().map(|cell| escaped(cell)).collect();
-        let cells = cells.join(" | ");
-        line(&mut text, format_args!("| {cells} |"));
+    let mut table = T::default();
+    for measured in steps {
+        let cells = table.cells(measured);
+        let cells: Vec<String> = cells.iter().map(|cell| escaped(cell)).collect();
+        line(&mut text, format_args!("| {} |", cells.join(" | ")));
     }
     for note in table.notes() {
         line(&mut text, format_args!("\n{}", escaped(&note)));

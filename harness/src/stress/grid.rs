@@ -18,85 +18,37 @@ mod table;
 mod tests;
 mod walks;
 
-pub use files::write;
-pub use judge::{judge, useless};
 pub use measure::{Bound, Measured, Saved};
 pub use shot::{GridShot, Own};
-pub use sweeps::sweeps;
-pub use table::{Table, line};
+pub use table::Table;
 pub use walks::Walks;
 
 use std::path::Path;
 use std::time::Instant;
 
+use super::extremes::{Extremes, Pages, entry_of, folder_of, load};
+use super::judge::Wrong;
 use super::sweeps::{Step, Sweep};
 use crate::compare::compare;
 use crate::compare::grid::{Asked, exhaustive, nearest_of_each};
-use crate::corpus::Entry;
 use crate::error::InputError;
 use crate::observe::{Exhaustive, Observed, Spec};
 use crate::replay::gpu::Adapter;
 use crate::replay::grid::GridRun;
 use crate::replay::rows::Rows;
 use crate::replay::{Options, replay_grid};
+use crate::report::RunInfo;
 use crate::row::Row;
-use crate::scene::{LoadError, Loaded, load_entry};
+use crate::scene::Loaded;
+use files::pages;
+use judge::{judge, useless};
+use sweeps::sweeps;
 
 /// The family that steps are of.
 const FAMILY: &str = "grid";
 
 /// What the spec is held against.
 pub const EVERY: &str = "every triangle";
-
-/// Writes a step's scene to `folder/SWEEP/STEP`, and asks its rays of all legs. What a step
-/// is refused for is part of the result; [`judge`] says whether it must be.
-///
-/// # Errors
-/// A folder that cannot be written, or a scene that cannot be read back.
-pub fn run(
-    sweep: &Sweep<GridShot>,
-    step: &Step<GridShot>,
-    folder: &Path,
-    adapters: &[Adapter],
-    options: &Options,
-) -> Result<Measured, InputError> {
-    let folder = folder.join(sweep.name).join(&step.label);
-    let path = step.shot.write(&folder)?;
-    let entry = Entry {
-        name: format!("stress-grid/{}/{}", sweep.name, step.label),
-        family: FAMILY.to_owned(),
-        path,
-    };
-    let mut measured = Measured::new(sweep.name, step, &entry);
-    let loaded = match load_entry(&entry, None) {
-        Ok(loaded) => loaded,
-        Err(LoadError::Input(error)) => {
-            measured.refused = Some(error.message);
-            return Ok(measured);
-        }
-        Err(missing @ LoadError::Missing { .. }) => {
-            return Err(InputError::new(&entry.path, missing.to_string()));
-        }
-    };
-    let of_step = |words: String| InputError::new(&entry.path, words);
-    match spec_of(&loaded, &step.shot) {
-        Ok(spec) => measured.of(&spec),
-        Err(refusal) => {
-            measured.refused = Some(refusal);
-            return Ok(measured);
-        }
-    }
-    measured.rows = rows(&loaded, &step.shot, adapters, options).map_err(of_step)?;
-    if loaded.scene.triangles.is_empty() {
-        measured.skipped = std::mem::take(&mut measured.rows);
-        let all = Options {
-            skip: false,
-            ..options.clone()
-        };
-        measured.rows = rows(&loaded, &step.shot, adapters, &all).map_err(of_step)?;
-    }
-    Ok(measured)
-}
 
 /// The spec's side, with the step's own rays.
 fn spec_of(loaded: &Loaded, shot: &GridShot) -> Result<GridRun, String> {
@@ -135,4 +87,82 @@ fn hold(run: &GridRun, rows: &mut Rows) {
         exhaustive(asked, nearest)
     });
     rows.add("trace", &spec, &every, judgement);
+}
+
+/// Grids, and rays through them.
+pub struct Rays;
+
+impl Extremes for Rays {
+    type Shot = GridShot;
+    type Measured = Measured;
+    type Table = Table;
+    const ENDING: &'static str = "-grid";
+
+    fn sweeps() -> Vec<Sweep<GridShot>> {
+        sweeps()
+    }
+
+    fn more_legs() -> Vec<String> {
+        vec![EVERY.to_owned()]
+    }
+
+    /// Writes a step's scene to `folder/SWEEP/STEP`, and asks its rays of all legs. What a step
+    /// is refused for is part of the result; [`judge`] says whether it must be.
+    fn run(
+        sweep: &Sweep<GridShot>,
+        step: &Step<GridShot>,
+        folder: &Path,
+        adapters: &[Adapter],
+        options: &Options,
+    ) -> Result<Measured, InputError> {
+        let path = step.shot.write(&folder_of(folder, sweep, step))?;
+        let entry = entry_of::<Rays>(FAMILY, sweep, step, path);
+        let mut measured = Measured::new(sweep.name, step, &entry);
+        let loaded = match load(&entry)? {
+            Ok(loaded) => loaded,
+            Err(words) => {
+                measured.refused = Some(words);
+                return Ok(measured);
+            }
+        };
+        let of_step = |words: String| InputError::new(&entry.path, words);
+        match spec_of(&loaded, &step.shot) {
+            Ok(spec) => measured.of(&spec),
+            Err(refusal) => {
+                measured.refused = Some(refusal);
+                return Ok(measured);
+            }
+        }
+        measured.rows = rows(&loaded, &step.shot, adapters, options).map_err(of_step)?;
+        if loaded.scene.triangles.is_empty() {
+            measured.skipped = std::mem::take(&mut measured.rows);
+            let all = Options {
+                skip: false,
+                ..options.clone()
+            };
+            measured.rows = rows(&loaded, &step.shot, adapters, &all).map_err(of_step)?;
+        }
+        Ok(measured)
+    }
+
+    fn judge(measured: &Measured, legs: &[String]) -> Vec<Wrong> {
+        judge(measured, legs)
+    }
+
+    fn useless(all: &[Measured]) -> Vec<Wrong> {
+        useless(all)
+    }
+
+    fn rows(measured: &Measured) -> (&Path, &[Row]) {
+        (&measured.path, &measured.rows)
+    }
+
+    fn pages(
+        run: &RunInfo,
+        sweeps: &[Sweep<GridShot>],
+        all: &[Measured],
+        wrong: &[Wrong],
+    ) -> Pages {
+        pages(run, sweeps, all, wrong)
+    }
 }

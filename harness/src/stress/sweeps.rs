@@ -17,7 +17,7 @@ pub struct Sweep<S = Shot> {
     pub name: &'static str,
     /// What the number is.
     pub axis: &'static str,
-    pub(super) make: fn() -> Vec<Step<S>>,
+    make: fn() -> Vec<Step<S>>,
 }
 
 /// One scene of a sweep.
@@ -32,6 +32,11 @@ pub struct Step<S = Shot> {
 }
 
 impl<S> Sweep<S> {
+    /// A sweep of the steps that a function makes.
+    pub fn new(name: &'static str, axis: &'static str, make: fn() -> Vec<Step<S>>) -> Self {
+        Self { name, axis, make }
+    }
+
     /// Its steps, in order.
     pub fn steps(&self) -> Vec<Step<S>> {
         (self.make)()
@@ -40,7 +45,7 @@ impl<S> Sweep<S> {
 
 /// All of them.
 pub fn sweeps() -> Vec<Sweep> {
-    let sweep = |name, axis, make| Sweep { name, axis, make };
+    let sweep = Sweep::new;
     vec![
         sweep("scale", "size of the scene in units", scale_of_scene),
         sweep(

@@ -24,8 +24,35 @@ const COLUMNS: [(&str, usize); 15] = [
 ];
 
 /// Above the numbers: whose they are.
-pub const ABOVE: &str = "error over bound, the largest of all legs, by stage, Embree's in screen and in world space; \
+const ABOVE: &str = "error over bound, the largest of all legs, by stage, Embree's in screen and in world space; \
      share of Embree's pairs in class edge, in both; largest share unjudged; vertices";
+
+/// A sweep as a table.
+pub trait Lines: Default {
+    /// What came of a step.
+    type Measured;
+    /// Columns, and how wide they are on a terminal; what was skipped follows them.
+    const COLUMNS: &'static [(&'static str, usize)];
+    /// Above the numbers: what they are.
+    const ABOVE: &'static str;
+
+    /// The cells of a step.
+    fn cells(&mut self, measured: &Self::Measured) -> Vec<String>;
+
+    /// What the marks of skipped rows stand for, and what else there is to say.
+    fn notes(&self) -> Vec<String>;
+
+    /// Names of the columns.
+    fn names() -> Vec<&'static str> {
+        let names = Self::COLUMNS.iter().map(|(name, _)| *name);
+        names.chain(["skipped"]).collect()
+    }
+
+    /// A line on a terminal.
+    fn line(cells: &[impl AsRef<str>]) -> String {
+        laid_out(Self::COLUMNS, cells)
+    }
+}
 
 /// Lines of one sweep, as they come.
 #[derive(Default)]
@@ -33,15 +60,12 @@ pub struct Table {
     notes: Notes,
 }
 
-impl Table {
-    /// Names of the columns.
-    pub fn names() -> Vec<&'static str> {
-        let names = COLUMNS.iter().map(|(name, _)| *name);
-        names.chain(["skipped"]).collect()
-    }
+impl Lines for Table {
+    type Measured = Measured;
+    const COLUMNS: &'static [(&'static str, usize)] = &COLUMNS;
+    const ABOVE: &'static str = ABOVE;
 
-    /// The cells of a step.
-    pub fn cells(&mut self, m: &Measured) -> Vec<String> {
+    fn cells(&mut self, m: &Measured) -> Vec<String> {
         let mut cells = vec![m.step.clone(), compact(m.compared())];
         let worst = bounded().map(|stage| (stage, m.worst(stage).map(|(ratio, _)| ratio)));
         cells.extend(worst.iter().map(|(_, ratio)| ratio_of(*ratio)));
@@ -60,28 +84,17 @@ impl Table {
             let part = count as f64 / n.vertices.max(1) as f64;
             share(part)
         }));
-        cells.push(self.marks(m));
+        cells.push(self.notes.marks(m.skipped()));
         cells
     }
 
-    /// Marks of what a step skipped, each explained by [`Self::notes`].
-    fn marks(&mut self, m: &Measured) -> String {
-        self.notes.marks(m.skipped())
-    }
-
-    /// What the marks stand for.
-    pub fn notes(&self) -> impl Iterator<Item = String> {
-        self.notes.lines()
+    fn notes(&self) -> Vec<String> {
+        self.notes.lines().collect()
     }
 }
 
-/// A line on a terminal.
-pub fn line(cells: &[impl AsRef<str>]) -> String {
-    laid_out(&COLUMNS, cells)
-}
-
-/// The same in columns of these widths, and whatever follows them.
-pub(super) fn laid_out(columns: &[(&str, usize)], cells: &[impl AsRef<str>]) -> String {
+/// Cells in columns of these widths, and whatever follows them.
+fn laid_out(columns: &[(&str, usize)], cells: &[impl AsRef<str>]) -> String {
     let widths = columns.iter().map(|(_, width)| *width).chain([0]);
     let cell = |(cell, width): (&_, usize)| match width {
         0 => format!("  {}", AsRef::<str>::as_ref(cell)),

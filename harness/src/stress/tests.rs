@@ -5,6 +5,7 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::Sources;
 
 use super::*;
+use crate::corpus::Entry;
 use crate::digest::tests::row;
 use crate::replay::gpu::Adapters;
 use crate::row::{Class, Row};
@@ -216,11 +217,11 @@ fn a_defect_of_a_kernel_is_wrong() {
         format!("gpu@{}/compute", open[0].gpu.name),
         "embree".to_owned(),
     ];
-    let sound = run(&scale, &step, &folder, &open, &options).expect("the step is sound");
+    let sound = Frame::run(&scale, &step, &folder, &open, &options).expect("the step is sound");
     assert_eq!(judge(&sound, &legs), []);
     let patched = Sources::shipped(false).patched("vertex", "+ row.w;", "+ row.w * 1.00001;");
     open[0].kernels = Kernels::new(patched.expect("the kernel has this text"));
-    let broken = run(&scale, &step, &folder, &open, &options).expect("it runs");
+    let broken = Frame::run(&scale, &step, &folder, &open, &options).expect("it runs");
     let _ = std::fs::remove_dir_all(&folder);
     let wrong = judge(&broken, &legs);
     let first = wrong.first().expect("the defect is seen").to_string();

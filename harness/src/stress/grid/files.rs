@@ -1,30 +1,27 @@
 //! What a run writes: one CSV row for each step, leg and stage, and a page of Markdown.
 
-use std::io;
-use std::path::Path;
-
-use super::super::files::{Written, line, optional, preamble, put};
+use super::super::extremes::Pages;
+use super::super::files::{of_row, optional, preamble, section, summary, values};
 use super::super::judge::Wrong;
 use super::super::measure::exceeds;
 use super::super::sweeps::Sweep;
-use super::table::{ABOVE, Table};
+use super::table::Table;
 use super::{GridShot, Measured};
 use crate::report::RunInfo;
 use crate::row::{Class, Row};
-use crate::text::{count, markdown as escaped, quoted, share};
+use crate::text::{count, markdown as escaped, share};
 
-/// Writes both, with the endings of their kinds after `stem`.
-///
-/// # Errors
-/// A folder or file that cannot be written.
-pub fn write(
-    stem: &Path,
+/// Both of what a run writes.
+pub(super) fn pages(
     run: &RunInfo,
     sweeps: &[Sweep<GridShot>],
     all: &[Measured],
     wrong: &[Wrong],
-) -> io::Result<Written> {
-    put(stem, &markdown(run, sweeps, all, wrong), &csv(all))
+) -> Pages {
+    Pages {
+        page: markdown(run, sweeps, all, wrong),
+        table: csv(all),
+    }
 }
 
 /// All rows; those of what the plan skipped stand before what came of it all the same.
@@ -38,40 +35,20 @@ pub(super) fn csv(all: &[Measured]) -> String {
             let mut cells = vec![m.sweep.to_owned(), m.step.clone(), m.value.to_string()];
             cells.resize(25, String::new());
             cells.extend([format!("refused: {refused}"), String::new()]);
-            let cells: Vec<_> = cells.iter().map(|cell| quoted(cell)).collect();
-            text += &(cells.join(",") + "\n");
+            text += &values(&cells);
         }
         for row in m.skipped.iter().chain(&m.rows) {
-            let cells = of_row(m, row);
-            let cells = cells.each_ref().map(|cell| quoted(cell));
-            text += &(cells.join(",") + "\n");
+            text += &values(&cells_of(m, row));
         }
     }
     text
 }
 
-fn of_row(m: &Measured, row: &Row) -> [String; 27] {
-    let class = serde_json::to_string(&row.class).unwrap_or_default();
-    let [x, y, z] = m.cells.map(|cells| cells.to_string());
-    [
-        m.sweep.to_owned(),
-        m.step.clone(),
-        m.value.to_string(),
-        row.stage.clone(),
-        row.a.clone(),
-        row.b.clone(),
-        class.trim_matches('"').to_owned(),
-        row.unit.clone(),
-        row.compared.to_string(),
-        row.differ.to_string(),
-        row.unexplained.to_string(),
-        optional(row.error),
-        optional(row.error_over_bound),
-        row.admitted.to_string(),
-        row.admitted_share().to_string(),
-        x,
-        y,
-        z,
+fn cells_of(m: &Measured, row: &Row) -> Vec<String> {
+    let mut cells = vec![m.sweep.to_owned(), m.step.clone(), m.value.to_string()];
+    cells.extend(of_row(row));
+    cells.extend(m.cells.map(|cells| cells.to_string()));
+    cells.extend([
         m.list.to_string(),
         m.walks.longest.to_string(),
         m.walks.bound.to_string(),
@@ -81,7 +58,8 @@ fn of_row(m: &Measured, row: &Row) -> [String; 27] {
         optional(row.ms_b),
         row.skipped.clone().unwrap_or_default(),
         row.note.clone(),
-    ]
+    ]);
+    cells
 }
 
 fn markdown(
@@ -91,27 +69,15 @@ fn markdown(
     wrong: &[Wrong],
 ) -> String {
     let mut text = preamble("Stability of grids and rays", run);
-    let compared: u64 = all.iter().map(Measured::compared).sum();
-    let (steps, seconds) = (all.len(), run.seconds);
-    line(
-        &mut text,
-        format_args!(
-            "\n{steps} steps, {} items compared in {seconds:.0} s. {}",
-            count(compared),
-            match wrong.len() {
-                0 => "No leg disagrees, no error exceeds its bound, and no ray walks further than it may."
-                    .to_owned(),
-                n => format!("{n} things do not hold:"),
-            }
-        ),
-    );
-    for wrong in wrong {
-        line(&mut text, format_args!("- {}", escaped(&wrong.to_string())));
-    }
+    let compared = all.iter().map(Measured::compared).sum();
+    let sound =
+        "No leg disagrees, no error exceeds its bound, and no ray walks further than it may.";
+    text += &summary(run, (all.len(), compared), wrong, sound);
     text += &legs(all);
     text += &walks(all);
     for sweep in sweeps {
-        text += &section(sweep, all);
+        let steps = all.iter().filter(|m| m.sweep == sweep.name);
+        text += &section::<Table, _>(sweep, steps);
     }
     text
 }
@@ -216,23 +182,6 @@ fn walks(all: &[Measured]) -> String {
                 m.sweep, m.step, saved.passes, saved.ms
             );
         }
-    }
-    text
-}
-
-/// A sweep's table.
-fn section(sweep: &Sweep<GridShot>, all: &[Measured]) -> String {
-    let mut text = format!("\n## {}: {}\n\n{ABOVE}.\n\n", sweep.name, sweep.axis);
-    let names = Table::names();
-    line(&mut text, format_args!("| {} |", names.join(" | ")));
-    line(&mut text, format_args!("|{}", "---|".repeat(names.len())));
-    let mut table = Table::default();
-    for m in all.iter().filter(|m| m.sweep == sweep.name) {
-        let cells: Vec<String> = table.cells(m).iter().map(|cell| escaped(cell)).collect();
-        line(&mut text, format_args!("| {} |", cells.join(" | ")));
-    }
-    for note in table.notes() {
-        line(&mut text, format_args!("\n{}", escaped(&note)));
     }
     text
 }

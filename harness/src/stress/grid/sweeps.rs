@@ -19,7 +19,7 @@ pub(super) const HALF: i32 = 6 << 20;
 
 /// All of them.
 pub fn sweeps() -> Vec<Sweep<GridShot>> {
-    let sweep = |name, axis, make| Sweep { name, axis, make };
+    let sweep = Sweep::new;
     vec![
         sweep(
             "aligned",

@@ -1,7 +1,7 @@
 //! A sweep as a table: a line for each step.
 
 use super::super::notes::Notes;
-use super::super::table::{dash, laid_out, ratio_of};
+use super::super::table::{Lines, dash, ratio_of};
 use super::{Bound, Measured};
 use crate::text::{compact, share, time};
 
@@ -23,7 +23,7 @@ const COLUMNS: [(&str, usize); 13] = [
 ];
 
 /// Above the numbers: what they are.
-pub const ABOVE: &str = "rays of each leg; items compared, and that differ, over all legs; error over bound of the times of \
+const ABOVE: &str = "rays of each leg; items compared, and that differ, over all legs; error over bound of the times of \
      closest hits, the largest of all adapters and Embree's; share of Embree's rays in class edge, by query; largest share \
      of an adapter's closest hits that bounds do not tell from the spec's; cells along the axes, the longest list; the \
      longest walk over the most steps that it may take; steps that empty bricks save";
@@ -35,15 +35,12 @@ pub struct Table {
     saved: Vec<String>,
 }
 
-impl Table {
-    /// Names of the columns.
-    pub fn names() -> Vec<&'static str> {
-        let names = COLUMNS.iter().map(|(name, _)| *name);
-        names.chain(["skipped"]).collect()
-    }
+impl Lines for Table {
+    type Measured = Measured;
+    const COLUMNS: &'static [(&'static str, usize)] = &COLUMNS;
+    const ABOVE: &'static str = ABOVE;
 
-    /// The cells of a step.
-    pub fn cells(&mut self, m: &Measured) -> Vec<String> {
+    fn cells(&mut self, m: &Measured) -> Vec<String> {
         if let Some(refused) = &m.refused {
             let mut cells = vec![m.step.clone()];
             cells.extend(COLUMNS[1..].iter().map(|_| dash()));
@@ -79,13 +76,10 @@ impl Table {
         ]
     }
 
-    /// What the marks stand for, and what the plan saved.
-    pub fn notes(&self) -> impl Iterator<Item = String> {
-        self.notes.lines().chain(self.saved.iter().cloned())
+    fn notes(&self) -> Vec<String> {
+        self.notes
+            .lines()
+            .chain(self.saved.iter().cloned())
+            .collect()
     }
-}
-
-/// A line on a terminal.
-pub fn line(cells: &[impl AsRef<str>]) -> String {
-    laid_out(&COLUMNS, cells)
 }

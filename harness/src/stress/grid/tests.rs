@@ -10,9 +10,12 @@ use triptych_spec::grid::trace::trace;
 use triptych_spec::grid::{Blockers, Grid, Membership};
 
 use super::*;
+use crate::corpus::Entry;
 use crate::digest::tests::row;
 use crate::replay::gpu::Adapters;
 use crate::row::Class;
+use crate::scene::load_entry;
+use crate::stress::Lines;
 
 const LEG: &str = "gpu@x/compute";
 
@@ -32,7 +35,7 @@ fn measured_on_cpu(sweep: &str, label: &str, embree: bool) -> Measured {
         embree,
         ..Options::default()
     };
-    let measured = run(&sweep, &step, &folder, &[], &options);
+    let measured = Rays::run(&sweep, &step, &folder, &[], &options);
     let _ = std::fs::remove_dir_all(&folder);
     measured.expect("a scene")
 }
@@ -255,7 +258,7 @@ fn a_defect_of_a_kernel_is_wrong() {
         "embree".to_owned(),
         EVERY.to_owned(),
     ];
-    let sound = run(&sweep, &step, &folder, &open, &options).expect("the step is sound");
+    let sound = Rays::run(&sweep, &step, &folder, &open, &options).expect("the step is sound");
     assert_eq!(judge(&sound, &legs), []);
     assert_eq!(
         sound.rays, 888,
@@ -264,7 +267,7 @@ fn a_defect_of_a_kernel_is_wrong() {
     let error = "VOLUME_ERROR: f32 = 12.0 / 8388608.0;";
     let patched = Sources::shipped(false).patched("volume", error, "VOLUME_ERROR: f32 = 0.0;");
     open[0].kernels = Kernels::new(patched.expect("the kernel has this text"));
-    let broken = run(&sweep, &step, &folder, &open, &options).expect("it runs");
+    let broken = Rays::run(&sweep, &step, &folder, &open, &options).expect("it runs");
     let _ = std::fs::remove_dir_all(&folder);
     let wrong = judge(&broken, &legs);
     let first = wrong.first().expect("the defect is seen").to_string();
@@ -284,7 +287,7 @@ fn what_the_plan_saves_is_told() {
     assert!(saved.ms > 0.0, "it takes time");
     let mut table = Table::default();
     table.cells(&m);
-    let notes: Vec<String> = table.notes().collect();
+    let notes = table.notes();
     assert_eq!(notes.len(), 2, "{notes:?}");
     assert!(notes[0].contains("plan: nothing blocks a ray"), "{notes:?}");
     let one = measured_on_cpu("sparse", "1", true);

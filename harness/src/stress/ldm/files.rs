@@ -1,29 +1,25 @@
 //! What a run writes: one CSV row for each step, leg and stage, and a page of Markdown.
 
-use std::io;
-use std::path::Path;
-
-use super::super::files::{Written, line, optional, preamble, put};
+use super::super::extremes::Pages;
+use super::super::files::{line, of_row, optional, preamble, section, summary, values};
 use super::super::judge::Wrong;
 use super::super::sweeps::Sweep;
-use super::table::{ABOVE, Table};
+use super::table::Table;
 use super::{Bound, LdmShot, Measured};
 use crate::report::RunInfo;
-use crate::row::Row;
-use crate::text::{count, markdown as escaped, quoted};
+use crate::text::{count, markdown as escaped};
 
-/// Writes both, with the endings of their kinds after `stem`.
-///
-/// # Errors
-/// A folder or file that cannot be written.
-pub fn write(
-    stem: &Path,
+/// Both of what a run writes.
+pub(super) fn pages(
     run: &RunInfo,
     sweeps: &[Sweep<LdmShot>],
     all: &[Measured],
     wrong: &[Wrong],
-) -> io::Result<Written> {
-    put(stem, &markdown(run, sweeps, all, wrong), &csv(all))
+) -> Pages {
+    Pages {
+        page: markdown(run, sweeps, all, wrong),
+        table: csv(all),
+    }
 }
 
 /// Names of what is of a step as a whole.
@@ -63,45 +59,23 @@ pub(super) fn csv(all: &[Measured]) -> String {
          admitted,admitted_share,{},skipped,note\n",
         OF_STEP.join(",")
     );
-    let mut add = |cells: Vec<String>| {
-        let cells: Vec<_> = cells.iter().map(|cell| quoted(cell)).collect();
-        text += &(cells.join(",") + "\n");
-    };
     for m in all {
         let named = [m.sweep.to_owned(), m.step.clone(), m.value.to_string()];
         if let Some(refused) = &m.refused {
             let mut cells = named.to_vec();
             cells.resize(15 + OF_STEP.len(), String::new());
             cells.extend([format!("refused: {refused}"), String::new()]);
-            add(cells);
+            text += &values(&cells);
         }
         for row in &m.rows {
             let mut cells = named.to_vec();
             cells.extend(of_row(row));
             cells.extend(of_step(m));
             cells.extend([row.skipped.clone().unwrap_or_default(), row.note.clone()]);
-            add(cells);
+            text += &values(&cells);
         }
     }
     text
-}
-
-fn of_row(row: &Row) -> [String; 12] {
-    let class = serde_json::to_string(&row.class).unwrap_or_default();
-    [
-        row.stage.clone(),
-        row.a.clone(),
-        row.b.clone(),
-        class.trim_matches('"').to_owned(),
-        row.unit.clone(),
-        row.compared.to_string(),
-        row.differ.to_string(),
-        row.unexplained.to_string(),
-        optional(row.error),
-        optional(row.error_over_bound),
-        row.admitted.to_string(),
-        row.admitted_share().to_string(),
-    ]
 }
 
 fn of_step(m: &Measured) -> [String; OF_STEP.len()] {
@@ -141,28 +115,14 @@ fn of_step(m: &Measured) -> [String; OF_STEP.len()] {
 
 fn markdown(run: &RunInfo, sweeps: &[Sweep<LdmShot>], all: &[Measured], wrong: &[Wrong]) -> String {
     let mut text = preamble("Stability of layered depth maps", run);
-    let compared: u64 = all.iter().map(Measured::compared).sum();
-    let (steps, seconds) = (all.len(), run.seconds);
-    line(
-        &mut text,
-        format_args!(
-            "\n{steps} steps, {} items compared in {seconds:.0} s. {}",
-            count(compared),
-            match wrong.len() {
-                0 =>
-                    "No leg disagrees, no error exceeds its bound, and points find what they must."
-                        .to_owned(),
-                n => format!("{n} things do not hold:"),
-            }
-        ),
-    );
-    for wrong in wrong {
-        line(&mut text, format_args!("- {}", escaped(&wrong.to_string())));
-    }
+    let compared = all.iter().map(Measured::compared).sum();
+    let sound = "No leg disagrees, no error exceeds its bound, and points find what they must.";
+    text += &summary(run, (all.len(), compared), wrong, sound);
     text += &largest(all);
     text += &found(all);
     for sweep in sweeps {
-        text += &section(sweep, all);
+        let steps = all.iter().filter(|m| m.sweep == sweep.name);
+        text += &section::<Table, _>(sweep, steps);
     }
     text
 }
@@ -212,21 +172,4 @@ fn found(all: &[Measured]) -> String {
         count(sum(|m| m.alone.steep)),
         count(sum(|m| m.alone.met)),
     )
-}
-
-/// A sweep's table.
-fn section(sweep: &Sweep<LdmShot>, all: &[Measured]) -> String {
-    let mut text = format!("\n## {}: {}\n\n{ABOVE}.\n\n", sweep.name, sweep.axis);
-    let names = Table::names();
-    line(&mut text, format_args!("| {} |", names.join(" | ")));
-    line(&mut text, format_args!("|{}", "---|".repeat(names.len())));
-    let mut table = Table::default();
-    for m in all.iter().filter(|m| m.sweep == sweep.name) {
-        let cells: Vec<String> = table.cells(m).iter().map(|cell| escaped(cell)).collect();
-        line(&mut text, format_args!("| {} |", cells.join(" | ")));
-    }
-    for note in table.notes() {
-        line(&mut text, format_args!("\n{}", escaped(&note)));
-    }
-    text
 }

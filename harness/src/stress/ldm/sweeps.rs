@@ -11,7 +11,7 @@ use crate::vector::{add, normalize, scale};
 
 /// All of them.
 pub fn sweeps() -> Vec<Sweep<LdmShot>> {
-    let sweep = |name, axis, make| Sweep { name, axis, make };
+    let sweep = Sweep::new;
     vec![
         sweep(
             "grazing",

@@ -1,7 +1,7 @@
 //! A sweep as a table: a line for each step.
 
 use super::super::notes::Notes;
-use super::super::table::{dash, laid_out, ratio_of};
+use super::super::table::{Lines, dash, ratio_of};
 use super::{Bound, Form, Measured};
 use crate::text::{compact, count, share};
 
@@ -29,7 +29,7 @@ const COLUMNS: [(&str, usize); 19] = [
 ];
 
 /// Above the numbers: what they are.
-pub const ABOVE: &str = "points that ask, and maps; items compared, and that differ, over all legs; error over bound of \
+const ABOVE: &str = "points that ask, and maps; items compared, and that differ, over all legs; error over bound of \
      the adapters' sums and light, of Embree's depths, and of what points find against the unrounded scene; what is open \
      against 4,096 random rays a point: RMSE, its parts by the number of directions (with the rays' noise), by rounding to \
      the lattice and by the maps' pixels, the largest error and the largest by pixels; of all weight, what rays meet and \
@@ -51,14 +51,32 @@ pub struct Table {
 }
 
 impl Table {
-    /// Names of the columns.
-    pub fn names() -> Vec<&'static str> {
-        let names = COLUMNS.iter().map(|(name, _)| *name);
-        names.chain(["skipped"]).collect()
+    fn remember(&mut self, m: &Measured) {
+        if m.form == Form::Sheets {
+            let bands = |n: Option<f64>| n.map_or_else(dash, |n| format!("{n:.3}"));
+            let (lost, found) = (m.found.farthest_lost, m.found.nearest_found);
+            self.sheets
+                .push(format!("{}: {} / {}", m.step, bands(lost), bands(found)));
+        }
+        let of_step = [m.alone.pairs, m.alone.steep, m.alone.met];
+        self.steep = [0, 1, 2].map(|i| self.steep[i] + of_step[i]);
+        let parts = &m.parts;
+        if m.sweep == "resolution" && (25.0..=400.0).contains(&m.value) {
+            self.pixels.push([m.value, parts.resolution.rmse]);
+        }
+        if m.sweep == "directions" && (16.0..=1024.0).contains(&m.value) {
+            let squares = parts.directions.rmse.powi(2) - parts.noise.powi(2);
+            self.directions.push([m.value, squares.max(0.0).sqrt()]);
+        }
     }
+}
 
-    /// The cells of a step.
-    pub fn cells(&mut self, m: &Measured) -> Vec<String> {
+impl Lines for Table {
+    type Measured = Measured;
+    const COLUMNS: &'static [(&'static str, usize)] = &COLUMNS;
+    const ABOVE: &'static str = ABOVE;
+
+    fn cells(&mut self, m: &Measured) -> Vec<String> {
         if let Some(refused) = &m.refused {
             let mut cells = vec![m.step.clone()];
             cells.extend(COLUMNS[1..].iter().map(|_| dash()));
@@ -99,27 +117,7 @@ impl Table {
         ]
     }
 
-    fn remember(&mut self, m: &Measured) {
-        if m.form == Form::Sheets {
-            let bands = |n: Option<f64>| n.map_or_else(dash, |n| format!("{n:.3}"));
-            let (lost, found) = (m.found.farthest_lost, m.found.nearest_found);
-            self.sheets
-                .push(format!("{}: {} / {}", m.step, bands(lost), bands(found)));
-        }
-        let of_step = [m.alone.pairs, m.alone.steep, m.alone.met];
-        self.steep = [0, 1, 2].map(|i| self.steep[i] + of_step[i]);
-        let parts = &m.parts;
-        if m.sweep == "resolution" && (25.0..=400.0).contains(&m.value) {
-            self.pixels.push([m.value, parts.resolution.rmse]);
-        }
-        if m.sweep == "directions" && (16.0..=1024.0).contains(&m.value) {
-            let squares = parts.directions.rmse.powi(2) - parts.noise.powi(2);
-            self.directions.push([m.value, squares.max(0.0).sqrt()]);
-        }
-    }
-
-    /// What the marks stand for, and what there is to say of steps.
-    pub fn notes(&self) -> impl Iterator<Item = String> {
+    fn notes(&self) -> Vec<String> {
         let of = |what: &'static str, points: &[[f64; 2]]| {
             let order = order(points)?;
             let [from, to] = [points.first()?[0], points.last()?[0]];
@@ -149,7 +147,7 @@ impl Table {
             )
         });
         let more = [steep, sheets].into_iter().chain(orders).flatten();
-        self.notes.lines().chain(more)
+        self.notes.lines().chain(more).collect()
     }
 }
 
@@ -174,11 +172,6 @@ fn error(error: f64) -> String {
         0.0 => "0".to_owned(),
         error => format!("{error:.1e}"),
     }
-}
-
-/// A line on a terminal.
-pub fn line(cells: &[impl AsRef<str>]) -> String {
-    laid_out(&COLUMNS, cells)
 }
 
 #[cfg(test)]

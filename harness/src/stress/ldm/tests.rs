@@ -1,9 +1,11 @@
 //! Sweeps are what they say, and what is wrong is said.
 
 use super::*;
+use crate::corpus::Entry;
 use crate::digest::tests::row;
 use crate::row::{Class, Row};
-use crate::stress::Wrong;
+use crate::scene::{LoadError, load_entry};
+use crate::stress::Lines;
 
 const LEG: &str = "gpu@x/compute";
 
@@ -41,7 +43,7 @@ fn measured_on_cpu(sweep: &str, label: &str) -> Measured {
         gpu: false,
         ..Options::default()
     };
-    let measured = run(&sweep, &step, &folder, &[], &options);
+    let measured = Maps::run(&sweep, &step, &folder, &[], &options);
     let _ = std::fs::remove_dir_all(&folder);
     measured.expect("a scene")
 }

@@ -1,20 +1,10 @@
 //! `triptych bench grid --stress`.
 
-use std::io::Write;
-use std::path::PathBuf;
-use std::time::Instant;
-
 use super::super::super::Verdict;
 use super::super::super::paths::OnPaths;
-use super::super::super::run_info::run_info;
-use super::super::files::{Files, legs};
-use crate::bench::Machine;
-use crate::embree;
-use crate::output::stdout;
-use crate::replay::Options;
-use crate::replay::gpu::Adapter;
-use crate::stress::grid::{self, EVERY, GridShot, Measured, Table};
-use crate::stress::{Sweep, Wrong, select};
+use super::super::extremes;
+use super::super::files::Files;
+use crate::stress::grid::Rays;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -37,63 +27,5 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
-    let start = Instant::now();
-    let sweeps = select(grid::sweeps(), &args.patterns).map_err(anyhow::Error::msg)?;
-    let folder = args.files.ready("stress-grid")?;
-    let library = embree::library()?;
-    let found = args.on.usable()?;
-    let run = Run {
-        options: Options {
-            broken: found.broken,
-            paths: args.on.paths(),
-            ..Options::default()
-        },
-        adapters: found.open,
-        scenes: folder.join("scenes-grid"),
-    };
-    let (all, mut wrong) = run.sweeps(&sweeps)?;
-    if args.patterns.is_empty() {
-        wrong.extend(grid::useless(&all));
-    }
-    let seconds = start.elapsed().as_secs_f64();
-    let info = run_info(&run.adapters, &run.options.broken, Some(&library), seconds);
-    let machine = Machine::here(&run.adapters).slug;
-    let stem = folder.join(format!("stress-grid-{}-{machine}", info.date));
-    let written = grid::write(&stem, &info, &sweeps, &all, &wrong);
-    let steps = all.iter().map(|m| (m.path.as_path(), m.rows.as_slice()));
-    args.files.json(args.on.again(), steps, seconds)?;
-    args.files.end(written, &folder, &wrong)
-}
-
-/// A run under way.
-struct Run {
-    adapters: Vec<Adapter>,
-    options: Options,
-    scenes: PathBuf,
-}
-
-impl Run {
-    /// Every step of every sweep, printed as it is done.
-    fn sweeps(&self, sweeps: &[Sweep<GridShot>]) -> anyhow::Result<(Vec<Measured>, Vec<Wrong>)> {
-        let mut out = stdout();
-        let mut legs = legs(&self.adapters, &self.options);
-        legs.push(EVERY.to_owned());
-        let (mut all, mut wrong) = (Vec::new(), Vec::new());
-        for sweep in sweeps {
-            writeln!(out, "\n{}: {}", sweep.name, sweep.axis)?;
-            writeln!(out, "{}", grid::line(&Table::names()))?;
-            let mut table = Table::default();
-            for step in sweep.steps() {
-                let (adapters, options) = (&self.adapters, &self.options);
-                let measured = grid::run(sweep, &step, &self.scenes, adapters, options)?;
-                writeln!(out, "{}", grid::line(&table.cells(&measured)))?;
-                wrong.extend(grid::judge(&measured, &legs));
-                all.push(measured);
-            }
-            for note in table.notes() {
-                writeln!(out, "  {note}")?;
-            }
-        }
-        Ok((all, wrong))
-    }
+    extremes::run::<Rays>(&args.patterns, &args.on, &args.files)
 }
