@@ -4,7 +4,7 @@
 //! number that grows from step to step. Every step is replayed as any scene is, so that
 //! its rows are those of [`crate::replay`]: the largest error of each stage, that error
 //! over its bound, the share in class edge, what went unjudged, and what a leg refused.
-//! [`judge`] says what must hold of them; module `files` writes them down.
+//! [`Extremes::judge`] says what must hold of them; module `files` writes them down.
 
 mod extremes;
 mod files;

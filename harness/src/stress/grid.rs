@@ -107,7 +107,7 @@ impl Extremes for Rays {
     }
 
     /// Writes a step's scene to `folder/SWEEP/STEP`, and asks its rays of all legs. What a step
-    /// is refused for is part of the result; [`judge`] says whether it must be.
+    /// is refused for is part of the result; [`Extremes::judge`] says whether it must be.
     fn run(
         sweep: &Sweep<GridShot>,
         step: &Step<GridShot>,

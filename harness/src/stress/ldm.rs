@@ -64,7 +64,7 @@ impl Extremes for Maps {
     }
 
     /// Writes a step's scene to `folder/SWEEP/STEP`, and replays it through all legs. What a step is
-    /// refused for is part of the result; [`judge`] says whether it must be.
+    /// refused for is part of the result; [`Extremes::judge`] says whether it must be.
     fn run(
         sweep: &Sweep<LdmShot>,
         step: &Step<LdmShot>,
