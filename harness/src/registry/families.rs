@@ -1,0 +1,150 @@
+//! The table of all stages, by family.
+
+use super::{Chain, Family, Stage, Twin};
+
+/// All families, in the order in which they run.
+pub const FAMILIES: &[Family] = &[
+    Family {
+        name: "vertex",
+        chain: Chain::Frame,
+        stages: &[
+            vertex("transform", &["transform"]),
+            vertex("clip", &["clip"]),
+            vertex("snap", &["snap"]),
+        ],
+        no_corpus: Some("every scene of the other families goes through it"),
+    },
+    Family {
+        name: "raster",
+        chain: Chain::Frame,
+        stages: &[Stage {
+            name: "cover",
+            compute: Twin::Entries(&["cover"]),
+            fragment: Twin::Entries(&["cover_fragment"]),
+        }],
+        no_corpus: None,
+    },
+    Family {
+        name: "abuffer",
+        chain: Chain::Frame,
+        stages: &[
+            Stage {
+                name: "opaque",
+                compute: Twin::Entries(&["opaque_nearest", "opaque_first"]),
+                fragment: Twin::Entries(&["opaque_nearest_fragment", "opaque_first_fragment"]),
+            },
+            Stage {
+                name: "build",
+                compute: Twin::Entries(&["build"]),
+                fragment: Twin::Entries(&["build_fragment"]),
+            },
+            per_pixel("sort", &["sort"]),
+            per_pixel("resolve", &["resolve"]),
+        ],
+        no_corpus: None,
+    },
+    Family {
+        name: "grid",
+        chain: Chain::Rays,
+        stages: &[
+            in_cells("count", &["count", "count_chunks"]),
+            in_cells("scan", &["scan_tiles", "scan_sums", "scan"]),
+            in_cells(
+                "fill",
+                &[
+                    "fill",
+                    "fill_chunks",
+                    "fill_sort",
+                    "fill_runs",
+                    "fill_merge",
+                ],
+            ),
+            in_cells("link", &["link", "link_chunks"]),
+            in_cells("trace", &["trace_bricks", "trace"]),
+        ],
+        no_corpus: None,
+    },
+    Family {
+        name: "rsm",
+        chain: Chain::Indirect,
+        stages: &[
+            of_pixels("gbuffer", &["gbuffer"]),
+            of_pixels("rsm", &["rsm"]),
+            of_pixels("place", &["place"]),
+            of_pixels("direct", &["direct"]),
+            of_pixels("gather", &["gather"]),
+            of_pixels("block", &["block_rays", "block_bits", "block_sum"]),
+            of_pixels("blur", &["blur"]),
+            of_pixels("compose", &["compose"]),
+        ],
+        no_corpus: None,
+    },
+    Family {
+        name: "ldm",
+        chain: Chain::Maps,
+        stages: &[
+            of_maps(
+                "layers",
+                &[
+                    "layers_larges",
+                    "layers_count",
+                    "layers_count_large",
+                    "layers_tiles",
+                    "layers_sums",
+                    "layers_ends",
+                    "layers_fill",
+                    "layers_fill_large",
+                    "layers_sort",
+                    "layers_runs",
+                    "layers_merge",
+                ],
+            ),
+            of_maps("chain", &["chain", "chain_large", "chain_sort"]),
+            of_maps("neighbours", &["neighbours"]),
+            of_maps("occlusion", &["occlusion"]),
+            of_maps("environment", &["environment"]),
+            of_maps("mirror", &["mirror"]),
+        ],
+        no_corpus: None,
+    },
+];
+
+const fn vertex(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("the vertex stages run in compute kernels on both paths"),
+    }
+}
+
+const fn per_pixel(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on pixels, not on triangles: one kernel serves both paths"),
+    }
+}
+
+const fn in_cells(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on triangles, cells and rays, not on fragments"),
+    }
+}
+
+const fn of_pixels(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on pixels and texels that know their triangle"),
+    }
+}
+
+const fn of_maps(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on maps, pixels and points, in compute kernels"),
+    }
+}
