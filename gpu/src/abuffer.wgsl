@@ -104,6 +104,14 @@ fn build_fragment(placed: Placed) {
     insert(fragment_at(placed.prim, pixel.x, pixel.y));
 }
 
+fn next_of(at: u32) -> u32 {
+    return nodes[at].next;
+}
+
+fn set_next(at: u32, next: u32) {
+    nodes[at].next = next;
+}
+
 // Total order: nearest first, ties by triangle.
 fn before(a: u32, b: u32) -> bool {
     let x = nodes[a];

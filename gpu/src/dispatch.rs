@@ -54,8 +54,13 @@ impl Ready {
 
     /// The same after a buffer has been set to zero.
     pub(crate) fn after_clearing(mut self, buffer: wgpu::Buffer) -> Self {
-        self.set.push(Set::Zero(buffer));
+        self.clear(buffer);
         self
+    }
+
+    /// Sets a buffer to zero before it.
+    pub(crate) fn clear(&mut self, buffer: wgpu::Buffer) {
+        self.set.push(Set::Zero(buffer));
     }
 
     /// The same after a buffer has been made like the beginning of another, which is no shorter.

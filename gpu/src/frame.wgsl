@@ -1,4 +1,5 @@
 // What every kernel of a frame is told. Twin: `Frame` in frame.rs.
+//#import item
 
 struct Frame {
     width: u32,         // of the target, pixels
@@ -17,9 +18,6 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-
-// Workgroups are laid out in one dimension.
-const WORKGROUP: u32 = 64u;
 
 // Side of the guard rectangle, pixels.
 const GUARD: i32 = 4096;

@@ -225,6 +225,14 @@ fn chain_large(
     }
 }
 
+fn next_of(at: u32) -> u32 {
+    return nodes[at].next;
+}
+
+fn set_next(at: u32, next: u32) {
+    nodes[at].next = next;
+}
+
 fn before(a: u32, b: u32) -> bool {
     return nodes[a].key < nodes[b].key;
 }

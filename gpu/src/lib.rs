@@ -19,6 +19,7 @@ pub mod lists;
 pub mod pass;
 pub mod raster;
 pub mod rsm;
+pub mod tiles;
 pub mod timer;
 pub mod vertex;
 pub mod wgsl;

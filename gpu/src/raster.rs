@@ -63,6 +63,7 @@ pub struct Rasterizer<'g> {
     handed: Option<wgpu::Buffer>,
     /// Colour of each triangle.
     pub faces: wgpu::Buffer,
+    pub(crate) colours: Vec<[f32; 4]>,
     /// First and last row with a sample, of each triangle that has any.
     rows: Vec<Option<[i64; 2]>>,
     target: wgpu::TextureView,
@@ -98,6 +99,7 @@ impl<'g> Rasterizer<'g> {
             corners: gpu.upload("corners", &corners)?,
             handed: None,
             faces: gpu.upload("faces", faces)?,
+            colours: faces.to_vec(),
             target: target(gpu, primitives.size)?,
             passes: RefCell::default(),
         })
@@ -152,6 +154,16 @@ impl<'g> Rasterizer<'g> {
         let start = Instant::now();
         self.gpu.submit(encoder)?;
         Ok(start.elapsed())
+    }
+
+    /// Triangles.
+    pub(crate) fn prims(&self) -> u32 {
+        u32::try_from(self.rows.len()).expect("rows of triangles are words")
+    }
+
+    /// Nine numbers for each of them.
+    pub(crate) fn corners(&self) -> &wgpu::Buffer {
+        &self.corners
     }
 
     /// The passes since the last call, in the order in which they were recorded.

@@ -1,6 +1,7 @@
 // What is before and behind a point in a map. Twins: spec/src/ldm/neighbours.rs, and
 // `weight` in spec/src/ldm/occlusion.rs.
 //#import maps
+//#import word
 //#import runs
 
 struct Receiver {

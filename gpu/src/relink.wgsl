@@ -1,6 +1,6 @@
 // Linked lists put in order by relinking: runs of 1, 2, 4, … nodes are merged, so that lists of any
 // length are sorted in place, in n log n steps.
-// Imported where there are `nodes` with a `next`, and an order, `before`.
+// Imported where there are nodes with an order, `before`, and links: `next_of` and `set_next`.
 
 // End of a list, and an empty list's head.
 const EOL: u32 = 0xffffffffu;
@@ -47,7 +47,7 @@ fn relinked(given: Progress, head: u32) -> Progress {
 fn begin(head: u32) -> Progress {
     var sorted = head == EOL;
     if !sorted {
-        sorted = nodes[head].next == EOL;
+        sorted = next_of(head) == EOL;
     }
     if sorted {
         return Progress(head, EOL, EOL, EOL, 0u, 0u, 1u, DONE);
@@ -58,7 +58,7 @@ fn begin(head: u32) -> Progress {
 // One step of `right` past the left run.
 fn find_step(p: ptr<function, Progress>) {
     if (*p).left_size < (*p).run && (*p).right != EOL {
-        (*p).right = nodes[(*p).right].next;
+        (*p).right = next_of((*p).right);
         (*p).left_size += 1u;
     } else {
         (*p).right_size = (*p).run;
@@ -80,16 +80,16 @@ fn merge_step(p: ptr<function, Progress>) {
     var taken = (*p).left;
     if take_right {
         taken = (*p).right;
-        (*p).right = nodes[taken].next;
+        (*p).right = next_of(taken);
         (*p).right_size -= 1u;
     } else {
-        (*p).left = nodes[taken].next;
+        (*p).left = next_of(taken);
         (*p).left_size -= 1u;
     }
     if (*p).tail == EOL {
         (*p).merged = taken;
     } else {
-        nodes[(*p).tail].next = taken;
+        set_next((*p).tail, taken);
     }
     (*p).tail = taken;
 }
@@ -102,7 +102,7 @@ fn next_pair(p: ptr<function, Progress>) {
         (*p).state = FIND | SEVERAL;
         return;
     }
-    nodes[(*p).tail].next = EOL;
+    set_next((*p).tail, EOL);
     if ((*p).state & SEVERAL) == 0u {
         (*p).state = DONE;
         return;

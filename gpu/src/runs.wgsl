@@ -1,10 +1,10 @@
-// Lists as runs of one array.
+// Lists as runs of one array. Imported with what is listed, `Listed`.
 
 // Where each list's run starts; one more than lists.
 @group(0) @binding(6) var<storage, read_write> offsets: array<u32>;
 
 // What is listed, a run for each list.
-@group(0) @binding(7) var<storage, read_write> listed: array<u32>;
+@group(0) @binding(7) var<storage, read_write> listed: array<Listed>;
 
 // The list whose run an entry is in, of so many.
 fn list_of(entry: u32, lists: u32) -> u32 {

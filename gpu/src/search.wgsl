@@ -2,6 +2,7 @@
 //#import march
 //#import bricks
 //#import meet
+//#import word
 //#import runs
 
 const EOL: u32 = 0xffffffffu;

@@ -1,11 +1,12 @@
 // Lists in rising order: short ones by an invocation each, long ones by a workgroup each, in its
 // own memory, and the longest, if there are any, by an invocation for each entry.
-// Imported where there is a counter `unfinished`.
+// Imported where there is a counter `unfinished`, and with what is listed: its order, `less`, and
+// `LAST`, which nothing is behind.
 //#import item
 //#import runs
 
 // Entries, with runs twice as long in order.
-@group(0) @binding(8) var<storage, read_write> merged: array<u32>;
+@group(0) @binding(8) var<storage, read_write> merged: array<Listed>;
 
 // Lists up to so long are sorted by one invocation each.
 const SHORT: u32 = 32u;
@@ -25,7 +26,7 @@ struct Long {
 var<workgroup> longs: array<Long, 64>;
 var<workgroup> all_longs: atomic<u32>;
 var<workgroup> number_of_longs: u32;
-var<workgroup> own_values: array<u32, LONG>;
+var<workgroup> own_values: array<Listed, LONG>;
 
 // A list for each invocation of a workgroup, all of which come along. The length of what is too
 // long goes to `unfinished`.
@@ -60,7 +61,7 @@ fn sort_short(start: u32, end: u32) {
     for (var i = start + 1u; i < end; i += 1u) {
         let value = listed[i];
         var at = i;
-        while at > start && listed[at - 1u] > value {
+        while at > start && less(value, listed[at - 1u]) {
             listed[at] = listed[at - 1u];
             at -= 1u;
         }
@@ -75,7 +76,7 @@ fn sort_long(start: u32, length: u32, lane: u32) {
         size *= 2u;
     }
     for (var i = lane; i < size; i += WORKGROUP) {
-        own_values[i] = 0xffffffffu;
+        own_values[i] = LAST;
         if i < length {
             own_values[i] = listed[start + i];
         }
@@ -100,7 +101,7 @@ fn exchange(one: u32, other: u32, rising: bool) {
     if other > one {
         let a = own_values[one];
         let b = own_values[other];
-        if (a > b) == rising {
+        if less(b, a) == rising {
             own_values[one] = b;
             own_values[other] = a;
         }
@@ -140,12 +141,12 @@ fn merge_runs(entry: u32, lists: u32, size: u32) {
 }
 
 // How many of a run in order are smaller, or as large.
-fn below(value: u32, or_equal: bool, start: u32, end: u32) -> u32 {
+fn below(value: Listed, or_equal: bool, start: u32, end: u32) -> u32 {
     var low = start;
     var high = end;
     while low < high {
         let middle = (low + high) / 2u;
-        if listed[middle] < value || (or_equal && listed[middle] == value) {
+        if less(listed[middle], value) || (or_equal && !less(value, listed[middle])) {
             low = middle + 1u;
         } else {
             high = middle;
@@ -159,7 +160,7 @@ fn rank(entry: u32, start: u32, end: u32) -> u32 {
     let value = listed[entry];
     var before = 0u;
     for (var i = start; i < end; i += 1u) {
-        before += u32(listed[i] < value || (listed[i] == value && i < entry));
+        before += u32(less(listed[i], value) || (i < entry && !less(value, listed[i])));
     }
     return before;
 }

@@ -32,16 +32,16 @@ pub(super) enum Tried {
 }
 
 /// A band that is done.
-pub(super) struct Done {
-    pub(super) opaque: Opaque,
-    pub(super) band: BandResult,
+pub(crate) struct Done {
+    pub(crate) opaque: Opaque,
+    pub(crate) band: BandResult,
     /// Empty where the lists were not followed to their ends.
-    pub(super) image: Vec<[f32; 3]>,
-    pub(super) times: Times,
+    pub(crate) image: Vec<[f32; 3]>,
+    pub(crate) times: Times,
     /// The lists were found damaged.
-    pub(super) damaged: bool,
+    pub(crate) damaged: bool,
     /// The stage that followed a list without coming to its end.
-    pub(super) endless: Option<&'static str>,
+    pub(crate) endless: Option<&'static str>,
 }
 
 impl Run<'_, '_> {

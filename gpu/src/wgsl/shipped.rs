@@ -21,6 +21,7 @@ impl Sources {
         let mut files = shipped!(
             "abuffer",
             "asked",
+            "bin",
             "bricks",
             "ceiling",
             "cells",
@@ -57,6 +58,8 @@ impl Sources {
             "surface",
             "sweep",
             "texel",
+            "tile",
+            "tiles",
             "triangle",
             "vertex",
             "view",
@@ -64,6 +67,7 @@ impl Sources {
             "walk",
             "wide",
             "wide_native",
+            "word",
         );
         let native_wide = files.remove("wide_native");
         if let (true, Some(text)) = (native, native_wide) {

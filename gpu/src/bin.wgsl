@@ -1,0 +1,97 @@
+// Which triangles a tile may hold. Imported where there are `counts` and `offsets`, of tiles.
+//#import tile
+
+// Triangles in more tiles than this are shared by a workgroup.
+const FEW: u32 = 8u;
+
+// Those, in whatever order invocations come.
+struct Larges {
+    count: atomic<u32>,
+    prims: array<u32>,
+}
+
+@group(0) @binding(16) var<storage, read_write> larges: Larges;
+
+// Tiles of which columns and rows hold a sample within a triangle's box, and how many they are.
+struct Box {
+    first: vec2<u32>,
+    across: u32,
+    tiles: u32,
+}
+
+fn box_of(s: Setup) -> Box {
+    let half = i32(1u << (frame.bits - 1u));
+    let low = min(s.a.xy, min(s.b.xy, s.c.xy));
+    let high = max(s.a.xy, max(s.b.xy, s.c.xy));
+    let top = vec2(0, i32(frame.first_row));
+    let end = vec2(i32(frame.width), i32(frame.first_row + frame.rows));
+    // The first sample at or after `low`, and the last up to `high`: shifts round down.
+    let first = max((low + (half - 1)) >> vec2(frame.bits), top);
+    let last = min((high - half) >> vec2(frame.bits), end - 1);
+    if s.empty || any(first > last) {
+        return Box(vec2(0u), 0u, 0u);
+    }
+    let begin = vec2<u32>(first - top) / SIDE;
+    let size = vec2<u32>(last - top) / SIDE - begin + 1u;
+    return Box(begin, size.x, size.x * size.y);
+}
+
+fn tile_in(box: Box, i: u32) -> u32 {
+    return (box.first.y + i / box.across) * tiles_across() + box.first.x + i % box.across;
+}
+
+fn is_drawn(prim: u32) -> bool {
+    return (faces[prim].a >= 1.0) == (tiled.opaque != 0u);
+}
+
+fn holds(s: Setup, tile: u32) -> bool {
+    return meets(edges_of(0u, s, first_sample(tile)));
+}
+
+fn list_triangle(tile: u32, prim: u32, fill: bool) {
+    if !fill {
+        atomicAdd(&counts[tile], 1u);
+        return;
+    }
+    let address = offsets[tile + 1u] - atomicSub(&counts[tile], 1u);
+    if address < tiled.capacity {
+        binned[address] = prim;
+    }
+}
+
+// A triangle by itself, unless it is large.
+fn bin_small(prim: u32, fill: bool) {
+    if !is_drawn(prim) {
+        return;
+    }
+    let s = prepare(prim);
+    let box = box_of(s);
+    if box.tiles > FEW {
+        if !fill {
+            larges.prims[atomicAdd(&larges.count, 1u)] = prim;
+        }
+        return;
+    }
+    for (var i = 0u; i < box.tiles; i += 1u) {
+        let tile = tile_in(box, i);
+        if holds(s, tile) {
+            list_triangle(tile, prim, fill);
+        }
+    }
+}
+
+// Every so many large triangles, by a workgroup.
+fn bin_large(group: u32, lane: u32, fill: bool) {
+    let count = atomicLoad(&larges.count);
+    for (var i = group; i < count; i += tiled.groups) {
+        let prim = larges.prims[i];
+        let s = prepare(prim);
+        let box = box_of(s);
+        for (var at = lane; at < box.tiles; at += WORKGROUP) {
+            let tile = tile_in(box, at);
+            if holds(s, tile) {
+                list_triangle(tile, prim, fill);
+            }
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Buffers of a band that is drawn by tiles, and the passes over them.
+
+use super::{Layout, Tiled, lists, tiles};
+use crate::dispatch::Ready;
+use crate::error::GpuError;
+use crate::frame::{Band, Frame, WORKGROUP};
+use crate::lists::{TILE, long_passes};
+use crate::raster::{Need, Rasterizer};
+
+/// Steps along lists that a dispatch takes.
+pub(super) const STEPS: u32 = 16_384;
+
+/// Workgroups that share large triangles, as long as that is enough.
+const GROUPS: u32 = 2048;
+
+/// Iterations of a workgroup over large triangles, at most: llvmpipe ends loops after 65,535.
+const SHARED: u64 = 1 << 15;
+
+/// Of a pixel: opaque surface, picture, count and offset of its list, head. Of a fragment: an entry
+/// and one more in order; or a node.
+pub(super) fn need(layout: Layout) -> Need {
+    Need {
+        what: match layout {
+            Layout::Blocks => "blocks",
+            Layout::Regions => "regions",
+        },
+        pixel: 2 * 4 + 16 + 3 * 4,
+        node: 16,
+        pixels_max: u64::from(u32::MAX),
+    }
+}
+
+/// A band on the device.
+pub(super) struct Room<'r, 'g> {
+    pub(super) rasterizer: &'r Rasterizer<'g>,
+    pub(super) frame: Frame,
+    /// Tiles of the band.
+    pub(super) tiles: u32,
+    /// Lists of the band.
+    pub(super) lists: u32,
+    /// All buffers by the names of variables. `counts` and `offsets` are those of lists.
+    buffers: Vec<(&'static str, wgpu::Buffer)>,
+    /// Triangles of each tile, while they are counted.
+    of_tiles: wgpu::Buffer,
+}
+
+impl<'r, 'g> Room<'r, 'g> {
+    /// Room for bins and lists, which are yet to be counted.
+    pub(super) fn new(
+        rasterizer: &'r Rasterizer<'g>,
+        band: Band,
+        frame: Frame,
+    ) -> Result<Self, GpuError> {
+        let gpu = rasterizer.gpu;
+        let width = rasterizer.size.width;
+        let [across, down] = tiles(width, band);
+        let (tiles, lists) = (across * down, lists(width, band));
+        let pixels = band.pixels(rasterizer.size);
+        let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
+        let buffers = vec![
+            ("bins", words("offsets of tiles", tiles + 1)?),
+            ("sums", words("sums of parts", lists.div_ceil(TILE))?),
+            ("larges", words("large triangles", rasterizer.prims() + 1)?),
+            // Made anew once they are counted.
+            ("binned", words("triangles in tiles", 0)?),
+            ("counts", words("counts of lists", lists)?),
+            ("offsets", words("offsets of lists", lists + 1)?),
+            ("unfinished", words("unfinished", 1)?),
+            ("picture", gpu.storage("picture", 16 * u64::from(pixels))?),
+        ];
+        Ok(Self {
+            of_tiles: words("triangles of tiles", tiles)?,
+            rasterizer,
+            frame,
+            tiles,
+            lists,
+            buffers,
+        })
+    }
+
+    /// Puts a buffer in place of another of its name, or adds it.
+    pub(super) fn set(&mut self, name: &'static str, buffer: wgpu::Buffer) {
+        self.buffers.retain(|(other, _)| *other != name);
+        self.buffers.push((name, buffer));
+    }
+
+    /// A buffer by its name.
+    pub(super) fn get(&self, name: &str) -> &wgpu::Buffer {
+        let found = self.buffers.iter().find(|(other, _)| *other == name);
+        &found.expect("a buffer that was made before").1
+    }
+
+    /// Bytes of all buffers.
+    pub(super) fn bytes(&self) -> u64 {
+        let own = self.buffers.iter().map(|(_, buffer)| buffer.size());
+        own.sum::<u64>() + self.of_tiles.size()
+    }
+
+    /// Exchanges the entries with those that the last pass left in order.
+    pub(super) fn swap(&mut self) {
+        for (name, _) in &mut self.buffers {
+            *name = match *name {
+                "listed" => "merged",
+                "merged" => "listed",
+                other => other,
+            };
+        }
+    }
+
+    fn pass(&self, entry: &str, tiled: Tiled, groups: u32) -> Result<Ready, GpuError> {
+        self.pass_with(entry, tiled, groups, &[])
+    }
+
+    /// A pass, with other buffers in place of those of the same names.
+    fn pass_with(
+        &self,
+        entry: &str,
+        tiled: Tiled,
+        groups: u32,
+        others: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Ready, GpuError> {
+        let Rasterizer { gpu, kernels, .. } = *self.rasterizer;
+        let frame = gpu.uniform("frame", &self.frame)?;
+        let tiled = gpu.uniform("tiled", &tiled)?;
+        let mut all = others.to_vec();
+        all.extend([
+            ("frame", &frame),
+            ("tiled", &tiled),
+            ("corners", self.rasterizer.corners()),
+            ("faces", &self.rasterizer.faces),
+        ]);
+        all.extend(self.buffers.iter().map(|(name, buffer)| (*name, buffer)));
+        Ready::new(gpu, kernels, ("tiles", entry), groups, &all)
+    }
+
+    /// Counts the triangles of each tile, and where its bin begins.
+    pub(super) fn count_bins(&self, opaque: bool) -> Result<Vec<Ready>, GpuError> {
+        let tiled = self.of_triangles(opaque, 0);
+        let others = [("counts", &self.of_tiles), ("offsets", self.get("bins"))];
+        let small = self.pass_with("bin_count", tiled, tiled.items.div_ceil(WORKGROUP), &others)?;
+        let small = small.after_clearing(self.of_tiles.clone());
+        let mut passes = vec![
+            small.after_clearing(self.get("larges").clone()),
+            self.pass_with("bin_count_large", tiled, tiled.groups, &others)?,
+        ];
+        passes.extend(self.offsets(self.tiles, &others)?);
+        Ok(passes)
+    }
+
+    /// Fills the bins, which have room for so many triangles.
+    pub(super) fn fill_bins(&self, opaque: bool, binned: u32) -> Result<Vec<Ready>, GpuError> {
+        let tiled = self.of_triangles(opaque, binned);
+        let others = [("counts", &self.of_tiles), ("offsets", self.get("bins"))];
+        Ok(vec![
+            self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
+            self.pass_with("bin_fill_large", tiled, tiled.groups, &others)?,
+        ])
+    }
+
+    fn of_triangles(&self, opaque: bool, capacity: u32) -> Tiled {
+        let prims = self.rasterizer.prims();
+        Tiled {
+            items: prims,
+            opaque: opaque.into(),
+            capacity,
+            groups: groups(prims, self.tiles),
+            ..Tiled::default()
+        }
+    }
+
+    /// Where each of so many runs begins.
+    fn offsets(
+        &self,
+        items: u32,
+        others: &[(&str, &wgpu::Buffer)],
+    ) -> Result<[Ready; 3], GpuError> {
+        let tiled = Tiled {
+            items,
+            ..Tiled::default()
+        };
+        let parts = items.div_ceil(TILE);
+        Ok([
+            self.pass_with("bin_parts", tiled, parts, others)?,
+            self.pass_with("bin_sums", tiled, 1, others)?,
+            self.pass_with("bin_offsets", tiled, parts, others)?,
+        ])
+    }
+
+    /// A kernel over all tiles, so many triangles at a time, of bins of at most `longest`.
+    pub(super) fn drawn(
+        &self,
+        entry: &str,
+        capacity: u32,
+        (longest, drawn): (u32, u32),
+    ) -> Result<Vec<Ready>, GpuError> {
+        let pass = |first| {
+            let tiled = Tiled {
+                items: self.tiles,
+                capacity,
+                first,
+                count: drawn,
+                ..Tiled::default()
+            };
+            self.pass(entry, tiled, self.tiles)
+        };
+        let mut passes = Vec::new();
+        for first in (0..longest.max(1)).step_by(drawn.max(1) as usize) {
+            passes.push(pass(first)?);
+        }
+        Ok(passes)
+    }
+
+    /// Counts the fragments of each list, and where it begins.
+    pub(super) fn count_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
+        let mut passes = self.drawn("blocks_count", 0, bins)?;
+        if let Some(first) = passes.first_mut() {
+            first.clear(self.get("counts").clone());
+        }
+        passes.extend(self.offsets(self.lists, &[])?);
+        Ok(passes)
+    }
+
+    /// Puts so many entries in order, in lists of at most `longest`. Where passes exchange them,
+    /// [`Self::swap`] follows each; how often is told.
+    pub(super) fn sort_lists(
+        &mut self,
+        entries: u32,
+        longest: u32,
+    ) -> Result<(Vec<Ready>, u32), GpuError> {
+        let tiled = |items, run| Tiled {
+            items,
+            run,
+            ..Tiled::default()
+        };
+        let sort = self.pass(
+            "blocks_sort",
+            tiled(self.lists, 0),
+            self.lists.div_ceil(WORKGROUP),
+        )?;
+        let mut passes = vec![sort];
+        let mut swaps = 0;
+        for (entry, run) in long_passes(["blocks_runs", "blocks_merge"], longest) {
+            passes.push(self.pass(entry, tiled(entries, run), entries.div_ceil(WORKGROUP))?);
+            self.swap();
+            swaps += 1;
+        }
+        Ok((passes, swaps))
+    }
+
+    /// Blends lists of at most `longest`.
+    pub(super) fn shade(&self, longest: u32) -> Result<Vec<Ready>, GpuError> {
+        let mut passes = Vec::new();
+        for first in (0..longest.max(1)).step_by(STEPS as usize) {
+            let tiled = Tiled {
+                items: self.tiles,
+                first,
+                count: STEPS,
+                ..Tiled::default()
+            };
+            passes.push(self.pass("shade", tiled, self.tiles)?);
+        }
+        Ok(passes)
+    }
+}
+
+/// Workgroups for large triangles: a triangle takes an iteration, and one for each 64 tiles.
+fn groups(prims: u32, tiles: u32) -> u32 {
+    let of_each = u64::from(tiles.div_ceil(WORKGROUP)) + 1;
+    let needed = (u64::from(prims) * of_each).div_ceil(SHARED);
+    u32::try_from(needed.max(GROUPS.into()).min(prims.into())).expect("at most the triangles")
+}
