@@ -13,9 +13,8 @@ use crate::error::GpuError;
 use crate::frame::Band;
 use crate::pass::Pass;
 use crate::raster::{Attempts, Rasterizer};
-pub(crate) use attempt::Done;
 pub use attempt::STEPS;
-use attempt::{Run, Tried};
+use attempt::{Done, Run, Tried};
 pub use buffers::PROGRESS;
 pub use stages::{Stage, Stages};
 pub use timed::{KEPT_MAX, Part, Timed, can_keep, with_layers};
@@ -147,7 +146,7 @@ fn attempts(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Attempts {
 
 impl Abuffer {
     /// Adds a band. There is no picture unless every band has its part.
-    pub(crate) fn add(&mut self, done: Done) {
+    fn add(&mut self, done: Done) {
         self.opaque.key.extend(done.opaque.key);
         self.opaque.prim.extend(done.opaque.prim);
         self.damaged |= done.damaged;

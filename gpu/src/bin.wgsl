@@ -80,14 +80,15 @@ fn bin_small(prim: u32, fill: bool) {
     }
 }
 
-// Every so many large triangles, by a workgroup.
+// Large triangles, each by as many workgroups as there are for it.
 fn bin_large(group: u32, lane: u32, fill: bool) {
     let count = atomicLoad(&larges.count);
-    for (var i = group; i < count; i += tiled.groups) {
+    let share = max(tiled.groups / max(count, 1u), 1u);
+    for (var i = group / share; i < count; i += tiled.groups / share) {
         let prim = larges.prims[i];
         let s = prepare(prim);
         let box = box_of(s);
-        for (var at = lane; at < box.tiles; at += WORKGROUP) {
+        for (var at = group % share * WORKGROUP + lane; at < box.tiles; at += share * WORKGROUP) {
             let tile = tile_in(box, at);
             if holds(s, tile) {
                 list_triangle(tile, prim, fill);

@@ -125,7 +125,8 @@ fn fill_sort(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    sort_lists(chunk_of(group, groups) * WORKGROUP + lane, cells.items, lane);
+    let run = run_of(chunk_of(group, groups) * WORKGROUP + lane, cells.items);
+    sort_lists(run.x, run.y, lane);
 }
 
 // The longest lists: runs in order; one entry.
@@ -133,7 +134,8 @@ fn fill_sort(
 fn fill_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = item(id, groups);
     if entry < cells.items {
-        sort_run(entry, total_cells());
+        let cell = list_of(entry, total_cells());
+        sort_run(entry, offsets[cell], offsets[cell + 1u]);
     }
 }
 
@@ -142,7 +144,8 @@ fn fill_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
 fn fill_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let entry = item(id, groups);
     if entry < cells.items {
-        merge_runs(entry, total_cells(), cells.run);
+        let cell = list_of(entry, total_cells());
+        merge_runs(entry, offsets[cell], offsets[cell + 1u], cells.run);
     }
 }
 

@@ -174,7 +174,8 @@ fn layers_sort(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    sort_lists(chunk_of(group, groups) * WORKGROUP + lane, told.items, lane);
+    let run = run_of(chunk_of(group, groups) * WORKGROUP + lane, told.items);
+    sort_lists(run.x, run.y, lane);
 }
 
 // The longest lists: runs in order; one key.
@@ -182,7 +183,8 @@ fn layers_sort(
 fn layers_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let key = item(id, groups);
     if key < told.items {
-        sort_run(key, told.pixels);
+        let pixel = list_of(key, told.pixels);
+        sort_run(key, offsets[pixel], offsets[pixel + 1u]);
     }
 }
 
@@ -191,7 +193,8 @@ fn layers_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgr
 fn layers_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let key = item(id, groups);
     if key < told.items {
-        merge_runs(key, told.pixels, told.run);
+        let pixel = list_of(key, told.pixels);
+        merge_runs(key, offsets[pixel], offsets[pixel + 1u], told.run);
     }
 }
 

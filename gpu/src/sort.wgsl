@@ -30,21 +30,17 @@ var<workgroup> own_values: array<Listed, LONG>;
 
 // A list for each invocation of a workgroup, all of which come along. The length of what is too
 // long goes to `unfinished`.
-fn sort_lists(list: u32, lists: u32, lane: u32) {
+fn sort_lists(start: u32, length: u32, lane: u32) {
     if lane == 0u {
         atomicStore(&all_longs, 0u);
     }
     workgroupBarrier();
-    if list < lists {
-        let start = offsets[list];
-        let length = offsets[list + 1u] - start;
-        if length > LONG {
-            atomicMax(&unfinished, length);
-        } else if length > SHORT {
-            longs[atomicAdd(&all_longs, 1u)] = Long(start, length);
-        } else {
-            sort_short(start, start + length);
-        }
+    if length > LONG {
+        atomicMax(&unfinished, length);
+    } else if length > SHORT {
+        longs[atomicAdd(&all_longs, 1u)] = Long(start, length);
+    } else {
+        sort_short(start, start + length);
     }
     workgroupBarrier();
     if lane == 0u {
@@ -108,11 +104,9 @@ fn exchange(one: u32, other: u32, rising: bool) {
     }
 }
 
-// The longest lists, of so many lists: runs of RUN in order; an entry's rank is its place.
-fn sort_run(entry: u32, lists: u32) {
-    let list = list_of(entry, lists);
-    let start = offsets[list];
-    let end = offsets[list + 1u];
+// An entry of a list from `start` on. In the longest lists, runs of RUN are put in order; an entry's
+// rank is its place. Others are left as they are.
+fn sort_run(entry: u32, start: u32, end: u32) {
     if end - start <= LONG {
         merged[entry] = listed[entry];
         return;
@@ -122,10 +116,7 @@ fn sort_run(entry: u32, lists: u32) {
 }
 
 // The same: two runs in order become one. The first one's are before their equals.
-fn merge_runs(entry: u32, lists: u32, size: u32) {
-    let list = list_of(entry, lists);
-    let start = offsets[list];
-    let end = offsets[list + 1u];
+fn merge_runs(entry: u32, start: u32, end: u32, size: u32) {
     let value = listed[entry];
     if end - start <= LONG {
         merged[entry] = value;

@@ -15,7 +15,8 @@ struct Tiled {
     count: u32,     // and how many
     run: u32,       // entries in a row that are in order
     groups: u32,    // workgroups that share the large triangles
-    rounds: u32,    // of nearest layers, in a dispatch
+    layers: u32,    // layers that are shown, at most
+    stored: u32,    // whether lists are written back in order
 }
 
 @group(0) @binding(20) var<uniform> tiled: Tiled;
@@ -32,26 +33,19 @@ fn tiles_down() -> u32 {
     return (frame.rows + SIDE - 1u) / SIDE;
 }
 
-// A pixel of a tile.
-struct Place {
-    // Column and row within the tile.
-    at: vec2<i32>,
-    // Its number in the band; of a pixel beyond its edges, NOWHERE.
-    pixel: u32,
-}
-
-const NOWHERE: u32 = 0xffffffffu;
-
 // The first pixel of a tile, within the band.
 fn origin_of(tile: u32) -> vec2<u32> {
     return SIDE * vec2(tile % tiles_across(), tile / tiles_across());
 }
 
-fn place_of(tile: u32, lane: u32) -> Place {
-    let at = vec2(lane % SIDE, lane / SIDE);
-    let pixel = origin_of(tile) + at;
+// No pixel: beyond the edges of the band.
+const NOWHERE: u32 = 0xffffffffu;
+
+// The number of a tile's pixel in the band.
+fn pixel_of(tile: u32, lane: u32) -> u32 {
+    let pixel = origin_of(tile) + vec2(lane % SIDE, lane / SIDE);
     let inside = pixel.x < frame.width && pixel.y < frame.rows;
-    return Place(vec2<i32>(at), select(NOWHERE, pixel.y * frame.width + pixel.x, inside));
+    return select(NOWHERE, pixel.y * frame.width + pixel.x, inside);
 }
 
 // The sample of a tile's first pixel, in sub-pixels.
@@ -70,6 +64,8 @@ struct Edges {
     low: vec3<i32>,
     prim: u32,
     columns: vec3<i32>,
+    // Whether it covers all of the tile.
+    full: u32,
     rows: vec3<i32>,
 }
 
@@ -95,7 +91,9 @@ fn edges_of(prim: u32, s: Setup, sample: vec2<i32>) -> Edges {
     );
     let columns = vec3(s.b.y - s.c.y, s.c.y - s.a.y, s.a.y - s.b.y);
     let rows = vec3(s.c.x - s.b.x, s.a.x - s.c.x, s.b.x - s.a.x);
-    return Edges(low, prim, columns, rows);
+    let most = i32(SIDE) - 1;
+    let worst = low + most * (min(columns, vec3(0)) + min(rows, vec3(0)));
+    return Edges(low, prim, columns, u32((worst.x | worst.y | worst.z) >= 0), rows);
 }
 
 // Whether an edge leaves any sample of a tile to the triangle, for all three.
@@ -115,52 +113,42 @@ struct Plane {
     z: vec3<u32>,
 }
 
-// Triangles of a tile that are drawn next.
-var<workgroup> edges: array<Edges, WORKGROUP>;
-var<workgroup> planes: array<Plane, WORKGROUP>;
-var<workgroup> bin_bounds: vec2<u32>;
-
-// A tile's triangles of this dispatch, the same for all of a workgroup, all of which come along.
-fn bin_of(tile: u32, lane: u32) -> vec2<u32> {
-    if lane == 0u {
-        let first = bins[tile] + tiled.first;
-        bin_bounds = vec2(first, min(bins[tile + 1u], first + tiled.count));
-    }
-    return workgroupUniformLoad(&bin_bounds);
+fn plane_of(s: Setup, sample: vec2<i32>) -> Plane {
+    let ea = edge(s.b, s.c, sample);
+    let eb = edge(s.c, s.a, sample);
+    return Plane(ea, eb, edge(s.a, s.b, sample), s.area, depths(s));
 }
 
-// Prepares the next triangles, an invocation each; how many there are. All of a workgroup come along.
-fn load(first: u32, end: u32, sample: vec2<i32>, lane: u32) -> u32 {
-    workgroupBarrier();
-    if first + lane < end {
-        let prim = binned[first + lane];
-        let s = prepare(prim);
-        edges[lane] = edges_of(prim, s, sample);
-        planes[lane] = Plane(
-            edge(s.b, s.c, sample),
-            edge(s.c, s.a, sample),
-            edge(s.a, s.b, sample),
-            s.area,
-            depths(s),
-        );
-    }
-    workgroupBarrier();
-    return min(WORKGROUP, end - first);
-}
-
-fn covers(i: u32, at: vec2<i32>) -> bool {
-    let e = edges[i].low + edges[i].columns * at.x + edges[i].rows * at.y;
+// Whether a triangle covers a sample of the tile.
+fn covers(edges: Edges, at: vec2<i32>) -> bool {
+    let e = edges.low + edges.columns * at.x + edges.rows * at.y;
     return (e.x | e.y | e.z) >= 0;
 }
 
 // The depth key at a covered sample.
-fn key_at(i: u32, at: vec2<i32>) -> u32 {
-    let change = edges[i].columns * at.x + edges[i].rows * at.y;
+fn key_at(edges: Edges, plane: Plane, at: vec2<i32>) -> u32 {
+    let change = edges.columns * at.x + edges.rows * at.y;
     return depth_key(
-        planes[i].z,
-        planes[i].area,
-        wide_add(planes[i].ea, wide_shift(wide(change.x), frame.bits)),
-        wide_add(planes[i].eb, wide_shift(wide(change.y), frame.bits)),
-        wide_add(planes[i].ec, wide_shift(wide(change.z), frame.bits)),
+        plane.z,
+        plane.area,
+        wide_add(plane.ea, wide_shift(wide(change.x), frame.bits)),
+        wide_add(plane.eb, wide_shift(wide(change.y), frame.bits)),
+        wide_add(plane.ec, wide_shift(wide(change.z), frame.bits)),
     );
+}
+
+// Pixels of a tile of which the samples lie within a triangle's box, and how many.
+struct Spot {
+    first: vec2<i32>,
+    across: i32,
+    pixels: i32,
+}
+
+fn spot_of(s: Setup, sample: vec2<i32>) -> Spot {
+    let low = min(s.a.xy, min(s.b.xy, s.c.xy)) - sample;
+    let high = max(s.a.xy, max(s.b.xy, s.c.xy)) - sample;
+    // Shifts round down: the first sample at or after `low`, and the last up to `high`.
+    let first = max(-((-low) >> vec2(frame.bits)), vec2(0));
+    let size = max(min(high >> vec2(frame.bits), vec2(i32(SIDE) - 1)) - first + 1, vec2(0));
+    return Spot(first, size.x, size.x * size.y);
 }

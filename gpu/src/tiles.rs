@@ -1,17 +1,19 @@
 //! A-buffer by tiles on the device: triangles in bins, lists by tiles, in bands of rows.
 //!
-//! What comes out is that of [`crate::abuffer`], so that whoever compares need not know how the
-//! lists were laid out. Twin: `spec/src/tiles.rs`.
+//! Lists come out as those of [`crate::abuffer`], so that whoever compares need not know how they
+//! were laid out. Twin: `spec/src/tiles.rs`.
 
 mod attempt;
 mod linked;
 mod room;
 mod timed;
 
+use std::time::Duration;
+
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::Opaque;
 
-use crate::abuffer::Abuffer;
+use crate::abuffer::BandResult;
 use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
 use crate::raster::{Attempts, Rasterizer};
@@ -20,12 +22,6 @@ pub use timed::{Span, Timed};
 
 /// Pixels along a side of a tile. Twin: `SIDE` in `tile.wgsl`.
 pub const SIDE: u32 = 8;
-
-/// Triangles in more tiles than this are shared by a workgroup. Twin: `FEW` in `bin.wgsl`.
-pub const FEW: u32 = 8;
-
-/// Bits of a triangle's number in a node of 16 bytes. Twin: `PRIM_BITS` in `tiles.wgsl`.
-pub const PRIM_BITS: u32 = 24;
 
 /// Triangles of a tile that one dispatch draws. llvmpipe leaves every loop of an invocation after
 /// 65,535 iterations in all; a triangle takes one, 64 of them one more.
@@ -49,57 +45,80 @@ pub struct Tiled {
     pub run: u32,
     /// Workgroups that share the large triangles.
     pub groups: u32,
-    /// Rounds of nearest layers, in a dispatch.
-    pub rounds: u32,
-}
-
-/// How lists lie in memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layout {
-    /// Runs of one array, 8 bytes a fragment, counted before they are filled (stage `blocks`).
-    Blocks,
-    /// Linked lists of 16-byte nodes, a counter and nodes of its own for each tile (stage
-    /// `regions`).
-    Regions,
+    /// Layers that are shown, at most.
+    pub layers: u32,
+    /// Whether lists are written back in order.
+    pub stored: u32,
 }
 
 /// What to draw, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Options<'a> {
-    /// How lists are laid out.
-    pub layout: Layout,
     /// The nearest opaque surface of each pixel.
     pub opaque: &'a Opaque,
     /// Drop fragments at or behind it.
     pub depth_test: bool,
     /// Linear background colour.
     pub background: [f32; 3],
-    /// Fragments that the first attempt has room for, as far as they fit; nodes, of each tile of
-    /// [`Layout::Regions`]. `None` leaves it to the host.
+    /// Fragments that the first attempt has room for, as far as they fit; `None` leaves it to the
+    /// host.
     pub capacity: Option<u32>,
     /// Triangles of a tile that one dispatch draws, at most [`DRAWN`].
     pub drawn: u32,
+}
+
+/// What came out of all bands.
+#[derive(Default)]
+pub struct Drawn {
+    /// Of each band, where the bins of its tiles begin, and the triangles in them.
+    pub bins: Vec<(Band, Vec<u32>, Vec<u32>)>,
+    /// Of each band, its lists as they were filled, and in order.
+    pub bands: Vec<BandResult>,
+    /// The picture, row by row.
+    pub image: Vec<[f32; 3]>,
+    /// Time of each stage on the device, without transfers and retries.
+    pub times: Times,
+}
+
+/// Device time per stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Times {
+    /// Stage bin.
+    pub bin: Duration,
+    /// Stage jagged, with the lists that are too long to be put in order while they are blended.
+    pub jagged: Duration,
+    /// Stage shade.
+    pub shade: Duration,
 }
 
 /// Draws the transparent triangles, in bands of rows.
 ///
 /// # Errors
 /// Limits by name, WGSL errors, and whatever the device reports.
-pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Abuffer, GpuError> {
-    let mut result = Abuffer::default();
-    let need = room::need(options.layout);
+pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Drawn, GpuError> {
+    let mut result = Drawn::default();
+    let need = room::NEED;
     let mut attempts = Attempts::new(rasterizer.gpu, rasterizer.size, need, options.capacity);
     while let Some((band, capacity)) = attempts.next() {
         match attempt::run(rasterizer, &options, band, capacity) {
-            Ok(Tried::Done(done)) => result.add(*done),
-            Ok(Tried::Needs(nodes, stored)) => {
-                attempts.overflowed(band, nodes)?;
-                result.overflowed.extend(stored.map(|lists| (band, lists)));
-            }
+            Ok(Tried::Done(part)) => result.add(*part),
+            Ok(Tried::Needs(fragments)) => attempts.overflowed(band, fragments)?,
             Err(error) => attempts.failed(band, capacity, error)?,
         }
     }
     Ok(result)
+}
+
+impl Drawn {
+    /// Adds a band.
+    fn add(&mut self, part: Self) {
+        self.bins.extend(part.bins);
+        self.bands.extend(part.bands);
+        self.image.extend(part.image);
+        self.times.bin += part.times.bin;
+        self.times.jagged += part.times.jagged;
+        self.times.shade += part.times.shade;
+    }
 }
 
 /// Tiles of a band, across and down.

@@ -6,7 +6,8 @@
 //#import bin
 //#import scan
 //#import sort
-//#import relink
+//#import jagged
+//#import network
 
 // A fragment in a list: depth key and triangle. Nearest first, ties by triangle.
 alias Listed = vec2<u32>;
@@ -21,20 +22,6 @@ fn less(a: Listed, b: Listed) -> bool {
 @group(0) @binding(12) var<storage, read_write> unfinished: atomic<u32>;
 @group(0) @binding(21) var<storage, read_write> opaque_key: array<u32>;
 @group(0) @binding(22) var<storage, read_write> opaque_prim: array<u32>;
-
-// No opaque surface: farther than every key.
-const NOTHING: u32 = 0xffffffffu;
-
-// The key from which on a pixel's fragments are not kept.
-fn end_of(place: Place) -> u32 {
-    if place.pixel == NOWHERE {
-        return 0u;
-    }
-    if frame.depth_test == 0u {
-        return NOTHING;
-    }
-    return opaque_key[place.pixel];
-}
 
 // Stage bin: one triangle.
 @compute @workgroup_size(WORKGROUP)
@@ -105,9 +92,48 @@ fn bin_offsets(
     }
 }
 
-// Stage blocks: how long the list of each pixel of a tile will be.
+// Stage jagged: how long the list of each pixel of a tile will be.
 @compute @workgroup_size(WORKGROUP)
-fn blocks_count(
+fn jagged_count(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let tile = chunk_of(group, groups);
+    if tile < tiled.items {
+        draw(tile, lane, false);
+    }
+}
+
+// Where they will be; 64 lists of a tile.
+@compute @workgroup_size(WORKGROUP)
+fn jagged_place(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let tile = chunk_of(group, groups);
+    if tile < tiled.items {
+        place_lists(tile, lane);
+    }
+}
+
+// The same lists, filled.
+@compute @workgroup_size(WORKGROUP)
+fn jagged_fill(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let tile = chunk_of(group, groups);
+    if tile < tiled.items {
+        draw(tile, lane, true);
+    }
+}
+
+// Longer lists in order; 64 of them.
+@compute @workgroup_size(WORKGROUP)
+fn jagged_sort(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -116,123 +142,152 @@ fn blocks_count(
     if tile >= tiled.items {
         return;
     }
-    let place = place_of(tile, lane);
-    let sample = first_sample(tile);
-    let end = end_of(place);
-    let bin = bin_of(tile, lane);
-    var count = 0u;
-    for (var first = bin.x; first < bin.y; first += WORKGROUP) {
-        let loaded = load(first, bin.y, sample, lane);
-        for (var i = 0u; i < loaded; i += 1u) {
-            if end > 0u && covers(i, place.at) && (end == NOTHING || key_at(i, place.at) < end) {
-                count += 1u;
-            }
-        }
-    }
-    let list = tile * WORKGROUP + lane;
-    atomicStore(&counts[list], atomicLoad(&counts[list]) + count);
+    let run = run_at(tile, lane);
+    sort_lists(run.start, select(0u, run.length, run.row == CONTIGUOUS), lane);
 }
 
-// The same lists, filled; counts say how much is left.
+// The longest lists: runs in order; one entry. Of a list, `groups` workgroups take all entries.
 @compute @workgroup_size(WORKGROUP)
-fn blocks_fill(
+fn jagged_runs(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let tile = chunk_of(group, groups);
-    if tile >= tiled.items {
-        return;
-    }
-    let place = place_of(tile, lane);
-    let sample = first_sample(tile);
-    let end = end_of(place);
-    let bin = bin_of(tile, lane);
-    let list = tile * WORKGROUP + lane;
-    let stop = offsets[list + 1u];
-    var address = stop - atomicLoad(&counts[list]);
-    for (var first = bin.x; first < bin.y; first += WORKGROUP) {
-        let loaded = load(first, bin.y, sample, lane);
-        for (var i = 0u; i < loaded; i += 1u) {
-            if end > 0u && covers(i, place.at) {
-                let key = key_at(i, place.at);
-                if key < end && address < tiled.capacity {
-                    listed[address] = vec2(key, edges[i].prim);
-                    address += 1u;
-                }
-            }
-        }
-    }
-    atomicStore(&counts[list], stop - address);
-}
-
-// Lists in order; 64 of them.
-@compute @workgroup_size(WORKGROUP)
-fn blocks_sort(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    sort_lists(chunk_of(group, groups) * WORKGROUP + lane, tiled.items, lane);
-}
-
-// The longest lists: runs in order; one entry.
-@compute @workgroup_size(WORKGROUP)
-fn blocks_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let entry = item(id, groups);
-    if entry < tiled.items {
-        sort_run(entry, all_lists());
+    let entry = long_entry(chunk_of(group, groups), lane);
+    if entry.at < entry.end {
+        sort_run(entry.at, entry.start, entry.end);
     }
 }
 
 // The same: two runs in order become one; one entry.
 @compute @workgroup_size(WORKGROUP)
-fn blocks_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let entry = item(id, groups);
-    if entry < tiled.items {
-        merge_runs(entry, all_lists(), tiled.run);
-    }
-}
-
-fn all_lists() -> u32 {
-    return WORKGROUP * tiles_across() * tiles_down();
-}
-
-// Stage shade: the sorted list of a pixel over what lies behind it, nearest first. A dispatch goes on
-// where the one before stopped: the picture holds the sum so far and the transmittance.
-@compute @workgroup_size(WORKGROUP)
-fn shade(
+fn jagged_merge(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let tile = chunk_of(group, groups);
-    let place = place_of(tile, lane);
-    if tile >= tiled.items || place.pixel == NOWHERE {
+    let entry = long_entry(chunk_of(group, groups), lane);
+    if entry.at < entry.end {
+        merge_runs(entry.at, entry.start, entry.end, tiled.run);
+    }
+}
+
+struct Entry {
+    at: u32,
+    start: u32,
+    end: u32,
+}
+
+fn long_entry(group: u32, lane: u32) -> Entry {
+    let list = longest.lists[group / tiled.groups];
+    let run = run_at(list / WORKGROUP, list % WORKGROUP);
+    let at = run.start + group % tiled.groups * WORKGROUP + lane;
+    return Entry(at, run.start, run.start + run.length);
+}
+
+// Stage shade: the lists of up to 8 entries, sorted and blended over what lies behind.
+@compute @workgroup_size(WORKGROUP)
+fn shade_8(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let own = pixel_at(chunk_of(group, groups), lane);
+    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length <= 8u {
+        shown(own.pixel, shaded_8(own.run, own.end));
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn shade_16(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let own = pixel_at(chunk_of(group, groups), lane);
+    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length > 8u && own.run.length <= 16u {
+        shown(own.pixel, shaded_16(own.run, own.end));
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn shade_32(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let own = pixel_at(chunk_of(group, groups), lane);
+    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length > 16u && own.run.length <= 32u {
+        shown(own.pixel, shaded_32(own.run, own.end));
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn shade_64(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let own = pixel_at(chunk_of(group, groups), lane);
+    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length > 32u {
+        shown(own.pixel, shaded_64(own.run, own.end));
+    }
+}
+
+// Longer lists, sorted before. A dispatch goes on where the one before stopped: the picture holds the
+// sum so far and the transmittance.
+@compute @workgroup_size(WORKGROUP)
+fn shade_long(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let own = pixel_at(chunk_of(group, groups), lane);
+    if own.pixel == NOWHERE || own.run.row != CONTIGUOUS {
         return;
     }
-    let list = tile * WORKGROUP + lane;
-    let stop = offsets[list + 1u];
-    let first = offsets[list] + tiled.first;
-    if tiled.first > 0u && first >= stop {
+    if tiled.first > 0u && tiled.first >= own.run.length {
         return;
     }
     var seen = vec4(0.0, 0.0, 0.0, 1.0);
     if tiled.first > 0u {
-        seen = picture[place.pixel];
+        seen = picture[own.pixel];
     }
-    let last = min(stop, first + tiled.count);
-    for (var at = first; at < last; at += 1u) {
-        let entry = listed[at];
-        if entry.x >= opaque_key[place.pixel] {
+    let last = min(own.run.length, tiled.first + tiled.count);
+    for (var i = tiled.first; i < last; i += 1u) {
+        let entry = listed[own.run.start + i];
+        if entry.x >= own.end {
             break;
         }
         seen = over(seen, entry.y);
     }
-    if last == stop {
-        seen = vec4(seen.rgb + seen.a * behind(place.pixel), 1.0);
+    if last == own.run.length {
+        shown(own.pixel, seen);
+    } else {
+        picture[own.pixel] = seen;
     }
-    picture[place.pixel] = seen;
+}
+
+// A pixel, its list, and the key of what is opaque there.
+struct Own {
+    pixel: u32,
+    run: Run,
+    end: u32,
+}
+
+fn pixel_at(tile: u32, lane: u32) -> Own {
+    if tile >= tiled.items {
+        return Own(NOWHERE, Run(0u, 0u, 0u), 0u);
+    }
+    let pixel = pixel_of(tile, lane);
+    if pixel == NOWHERE {
+        return Own(NOWHERE, Run(0u, 0u, 0u), 0u);
+    }
+    return Own(pixel, run_at(tile, lane), opaque_key[pixel]);
+}
+
+fn shown(pixel: u32, seen: vec4<f32>) {
+    picture[pixel] = vec4(seen.rgb + seen.a * behind(pixel), 1.0);
 }
 
 // The next layer under those that were seen.
@@ -248,86 +303,4 @@ fn behind(pixel: u32) -> vec3<f32> {
         return frame.background.rgb;
     }
     return faces[prim].rgb;
-}
-
-// Stage regions: the paper's lists with a counter, and nodes of its own, for each tile.
-// Node: depth key, next node, mask and triangle, colour.
-@group(0) @binding(23) var<storage, read_write> nodes: array<vec4<u32>>;
-@group(0) @binding(24) var<storage, read_write> heads: array<u32>;
-// Nodes that each tile asked for.
-@group(0) @binding(25) var<storage, read_write> attempts: array<u32>;
-// Colour and opacity of each triangle, eight bits each.
-@group(0) @binding(26) var<storage, read_write> packed: array<u32>;
-
-const PRIM_BITS: u32 = 24u;
-
-var<workgroup> asked: atomic<u32>;
-
-@compute @workgroup_size(WORKGROUP)
-fn regions(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let tile = chunk_of(group, groups);
-    if tile >= tiled.items {
-        return;
-    }
-    if lane == 0u {
-        atomicStore(&asked, attempts[tile]);
-    }
-    let place = place_of(tile, lane);
-    let sample = first_sample(tile);
-    let end = end_of(place);
-    let bin = bin_of(tile, lane);
-    var head = EOL;
-    if place.pixel != NOWHERE {
-        head = heads[place.pixel];
-    }
-    for (var first = bin.x; first < bin.y; first += WORKGROUP) {
-        let loaded = load(first, bin.y, sample, lane);
-        for (var i = 0u; i < loaded; i += 1u) {
-            if end > 0u && covers(i, place.at) {
-                let key = key_at(i, place.at);
-                if key < end {
-                    head = insert(tile, head, key, edges[i].prim);
-                }
-            }
-        }
-    }
-    if place.pixel != NOWHERE {
-        heads[place.pixel] = head;
-    }
-    workgroupBarrier();
-    if lane == 0u {
-        attempts[tile] = atomicLoad(&asked);
-    }
-}
-
-// Section 3's steps for a head that nobody else sees: its new value.
-fn insert(tile: u32, head: u32, key: u32, prim: u32) -> u32 {
-    let own = atomicAdd(&asked, 1u);
-    if own >= tiled.capacity {
-        return head;
-    }
-    let address = tile * tiled.capacity + own;
-    nodes[address] = vec4(key, head, (1u << PRIM_BITS) | prim, packed[prim]);
-    return address;
-}
-
-fn next_of(at: u32) -> u32 {
-    return nodes[at].y;
-}
-
-fn set_next(at: u32, next: u32) {
-    nodes[at].y = next;
-}
-
-fn prim_of(node: vec4<u32>) -> u32 {
-    return node.z & ((1u << PRIM_BITS) - 1u);
-}
-
-// Total order: nearest first, ties by triangle.
-fn before(a: u32, b: u32) -> bool {
-    return less(vec2(nodes[a].x, prim_of(nodes[a])), vec2(nodes[b].x, prim_of(nodes[b])));
 }

@@ -1,6 +1,7 @@
 //! A small linker for WGSL: `//#import name` is replaced, once, by the file of
 //! that name, and every line of the result remembers where it came from.
 
+pub mod network;
 mod shipped;
 
 use std::borrow::Cow;

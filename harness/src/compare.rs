@@ -14,6 +14,7 @@ pub mod order;
 pub mod passes;
 pub mod region;
 pub mod rsm;
+pub mod tiles;
 pub mod vertex;
 
 use std::collections::BTreeMap;

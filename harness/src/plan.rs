@@ -75,6 +75,10 @@ impl Plan {
             lists = decide(name, transparent > 0, why, "no transparent triangles");
         }
         decide("resolve", true, "the picture".into(), "");
+        for name in ["bin", "jagged", "shade"] {
+            let why = format!("{transparent} transparent triangles");
+            decide(name, transparent > 0, why, "no transparent triangles");
+        }
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
             name: "depth test",

@@ -11,6 +11,7 @@
 //! | [`vertex`] | transform, clip, snap | `gpu/src/vertex.wgsl` |
 //! | [`raster`] | cover | `gpu/src/raster.wgsl` |
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
+//! | [`tiles`] | bin, jagged, shade | `gpu/src/tiles.wgsl` |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 //! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |
 //! | [`ldm`] | layers, chain, neighbours, occlusion, environment | `gpu/src/ldm.wgsl` |
@@ -25,4 +26,5 @@ pub mod matrix;
 pub mod raster;
 pub mod rsm;
 pub mod scene;
+pub mod tiles;
 pub mod vertex;

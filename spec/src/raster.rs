@@ -150,7 +150,7 @@ impl Setup {
     /// Smallest value of edge function `i` at a covered sample: 0 on a top or left
     /// edge, else 1. With y down and positive orientation, a left edge goes up and
     /// a top edge goes right.
-    fn least(&self, i: usize) -> i64 {
+    pub(crate) fn least(&self, i: usize) -> i64 {
         let (a, b) = self.edge_ends(i);
         let top_left = b[1] < a[1] || (b[1] == a[1] && b[0] > a[0]);
         i64::from(!top_left)

@@ -32,16 +32,16 @@ pub(super) enum Tried {
 }
 
 /// A band that is done.
-pub(crate) struct Done {
-    pub(crate) opaque: Opaque,
-    pub(crate) band: BandResult,
+pub(super) struct Done {
+    pub(super) opaque: Opaque,
+    pub(super) band: BandResult,
     /// Empty where the lists were not followed to their ends.
-    pub(crate) image: Vec<[f32; 3]>,
-    pub(crate) times: Times,
+    pub(super) image: Vec<[f32; 3]>,
+    pub(super) times: Times,
     /// The lists were found damaged.
-    pub(crate) damaged: bool,
+    pub(super) damaged: bool,
     /// The stage that followed a list without coming to its end.
-    pub(crate) endless: Option<&'static str>,
+    pub(super) endless: Option<&'static str>,
 }
 
 impl Run<'_, '_> {

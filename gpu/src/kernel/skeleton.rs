@@ -59,6 +59,7 @@ fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
     let items = match (stage.file, stage.name) {
         ("grid", _) => "cells.items",
         ("rsm", _) => "parameters.items",
+        ("tiles", _) => "tiled.items",
         ("ldm", "neighbours") => "told.maps * told.items",
         ("ldm", _) => "told.items",
         (_, "sort" | "resolve") => "frame.width * frame.rows",

@@ -4,7 +4,7 @@
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 27] = [
+pub const STAGES: [Stage; 30] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -72,6 +72,49 @@ pub const STAGES: [Stage; 27] = [
         contract: "Blends the sorted list of pixel i over the opaque surface or the background \
             into picture[i], in front of the opaque key only. Sets progress.unfinished if it \
             needs another dispatch.",
+    },
+    Stage {
+        name: "bin",
+        file: "tiles",
+        compute: &[
+            "bin_count",
+            "bin_count_large",
+            "bin_parts",
+            "bin_sums",
+            "bin_offsets",
+            "bin_fill",
+            "bin_fill_large",
+        ],
+        fragment: &[],
+        contract: "Counts the triangles of each tile of 8 x 8 pixels, adds the counts up to offsets, \
+            and fills `binned`: a triangle of tiled.items whose face is opaque if tiled.opaque says \
+            so, else one whose is not. Those of many tiles go to `larges` in the first pass, and are \
+            shared by workgroups in the second.",
+    },
+    Stage {
+        name: "jagged",
+        file: "tiles",
+        compute: &[
+            "jagged_count",
+            "jagged_place",
+            "jagged_fill",
+            "jagged_sort",
+            "jagged_runs",
+            "jagged_merge",
+        ],
+        fragment: &[],
+        contract: "A workgroup for each tile of tiled.items: counts the fragments of each pixel from \
+            the triangles tiled.first of its bin on, tiled.count of them; places the lists as jagged \
+            diagonals; fills them with key and triangle. Lists of more than 64 lie one after another, \
+            and are put in order.",
+    },
+    Stage {
+        name: "shade",
+        file: "tiles",
+        compute: &["shade_8", "shade_16", "shade_32", "shade_64", "shade_long"],
+        fragment: &[],
+        contract: "Puts lists of at most so many entries in order, writes them back if tiled.stored \
+            says so, and blends them into `picture`; longer ones are in order already.",
     },
     Stage {
         name: "count",

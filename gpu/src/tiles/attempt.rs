@@ -2,23 +2,27 @@
 
 use std::time::Duration;
 
-use triptych_spec::abuffer::{EOL, Lists};
+use triptych_spec::abuffer::Lists;
 
 use super::linked;
 use super::room::Room;
-use super::{Layout, Options};
-use crate::abuffer::{BandResult, Done, Times};
+use super::{DRAWN, Drawn, Options, Times};
+use crate::abuffer::BandResult;
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
-use crate::raster::Rasterizer;
+use crate::raster::{Rasterizer, SATURATED};
+
+/// Triangles in bins beyond which a band is split: a triangle has 64 fragments in a tile at most, and
+/// sums of fragments are to stay below [`SATURATED`].
+const BINNED_MAX: u32 = SATURATED / 64;
 
 /// What came of an attempt.
 pub(super) enum Tried {
     /// Everything fitted.
-    Done(Box<Done>),
-    /// So many nodes are needed; what was stored, where anything was.
-    Needs(u32, Option<Lists>),
+    Done(Box<Drawn>),
+    /// There is not enough room: so many fragments are to be stored.
+    Needs(u32),
 }
 
 /// Draws a band with room for so many fragments.
@@ -29,12 +33,20 @@ pub(super) fn run(
     capacity: u32,
 ) -> Result<Tried, GpuError> {
     let mut room = room(rasterizer, options, band)?;
-    let longest = bins(&mut room, false)?;
-    let drawn = (longest, options.drawn);
-    match options.layout {
-        Layout::Blocks => blocks(&mut room, band, capacity, drawn),
-        Layout::Regions => regions(&mut room, band, capacity, drawn),
+    let (bins, bin) = bins(&mut room, false)?;
+    let drawn = (longest(&bins), options.drawn.clamp(1, DRAWN));
+    let binned = bins.last().copied().unwrap_or(0);
+    if binned > BINNED_MAX {
+        // More fragments than any counter takes, for all that is known.
+        return Ok(Tried::Needs(SATURATED));
     }
+    let prims = rasterizer.gpu.read(room.get("binned"), binned as usize)?;
+    let mut tried = jagged(&mut room, band, capacity, drawn)?;
+    if let Tried::Done(drawn) = &mut tried {
+        drawn.times.bin = bin;
+        drawn.bins.push((band, bins, prims));
+    }
+    Ok(tried)
 }
 
 /// A band's buffers, with its opaque surfaces.
@@ -65,20 +77,23 @@ pub(super) fn room<'r, 'g>(
     Ok(room)
 }
 
-/// Puts the opaque or the other triangles in bins; how many the fullest holds.
-pub(super) fn bins(room: &mut Room<'_, '_>, opaque: bool) -> Result<u32, GpuError> {
+/// Puts the opaque or the other triangles in bins; where each begins.
+pub(super) fn bins(
+    room: &mut Room<'_, '_>,
+    opaque: bool,
+) -> Result<(Vec<u32>, Duration), GpuError> {
     let gpu = room.rasterizer.gpu;
-    submit(room, &room.count_bins(opaque)?)?;
+    let mut time = submit(room, &room.count_bins(opaque)?)?;
     let offsets: Vec<u32> = gpu.read(room.get("bins"), room.tiles as usize + 1)?;
     let binned = offsets.last().copied().unwrap_or(0);
     let bytes = 4 * u64::from(binned);
     room.set("binned", gpu.storage("triangles in tiles", bytes)?);
-    submit(room, &room.fill_bins(opaque, binned)?)?;
-    Ok(longest(&offsets))
+    time += submit(room, &room.fill_bins(opaque, binned)?)?;
+    Ok((offsets, time))
 }
 
-/// Stages blocks and shade.
-fn blocks(
+/// Stages jagged and shade.
+fn jagged(
     room: &mut Room<'_, '_>,
     band: Band,
     capacity: u32,
@@ -87,53 +102,43 @@ fn blocks(
     let rasterizer = room.rasterizer;
     let gpu = rasterizer.gpu;
     let mut times = Times::default();
-    times.build += submit(room, &room.count_lists(drawn)?)?;
-    let offsets: Vec<u32> = gpu.read(room.get("offsets"), room.lists as usize + 1)?;
-    let needed = offsets.last().copied().unwrap_or(0);
+    times.jagged += submit(room, &room.place_lists(drawn)?)?;
+    let needed = gpu.word(room.get("counter"), 0)?;
     if needed > capacity {
-        return Ok(Tried::Needs(needed, None));
+        return Ok(Tried::Needs(needed));
     }
-    let longest = longest(&offsets);
+    let [longest, longs]: [u32; 2] = gpu.read(room.get("longest"), 1)?[0];
     let entries = || gpu.storage("entries of lists", 8 * u64::from(needed));
     room.set("listed", entries()?);
     room.set("merged", entries()?);
-    times.build += submit(room, &room.drawn("blocks_fill", needed, drawn)?)?;
+    times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
+    let lists: Vec<linked::List> = gpu.read(room.get("lists"), room.lists as usize)?;
+    let rows: Vec<u32> = gpu.read(room.get("rows"), room.lists as usize)?;
     let linked = |room: &Room<'_, '_>| -> Result<Lists, GpuError> {
         let entries: Vec<[u32; 2]> = gpu.read(room.get("listed"), needed as usize)?;
         let size = (rasterizer.size.width, band);
-        Ok(linked::of_runs(
+        Ok(linked::of_rows(
             size,
-            &offsets,
+            (&lists, &rows),
             &entries,
             &rasterizer.colours,
         ))
     };
     let built = linked(room)?;
-    let (sort, _) = room.sort_lists(needed, longest)?;
-    times.sort = submit(room, &sort)?;
-    times.resolve = submit(room, &room.shade(longest)?)?;
-    Ok(Tried::Done(Box::new(Done {
-        opaque: Default::default(),
-        band: BandResult {
-            band,
-            sorted: Some(linked(room)?),
-            built,
-        },
+    let sort = room.sort_lists(longest, longs)?;
+    times.jagged += submit(room, &sort)?;
+    times.shade = submit(room, &room.shade(longest, true)?)?;
+    let result = BandResult {
+        band,
+        sorted: Some(linked(room)?),
+        built,
+    };
+    Ok(Tried::Done(Box::new(Drawn {
+        bins: Vec::new(),
+        bands: vec![result],
         image: picture(room)?,
         times,
-        damaged: false,
-        endless: None,
     })))
-}
-
-fn regions(
-    room: &mut Room<'_, '_>,
-    band: Band,
-    capacity: u32,
-    drawn: (u32, u32),
-) -> Result<Tried, GpuError> {
-    let _ = (room, band, capacity, drawn, EOL, linked::of_nodes);
-    todo!()
 }
 
 /// The longest of some runs.

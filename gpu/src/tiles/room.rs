@@ -1,6 +1,6 @@
 //! Buffers of a band that is drawn by tiles, and the passes over them.
 
-use super::{Layout, Tiled, lists, tiles};
+use super::{Tiled, lists, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
@@ -10,25 +10,29 @@ use crate::raster::{Need, Rasterizer};
 /// Steps along lists that a dispatch takes.
 pub(super) const STEPS: u32 = 16_384;
 
+/// Bytes of a list. Twin: `List` in `jagged.wgsl`.
+const LIST: u64 = 12;
+
+/// Entries of the longest list of a tile with rows. Twin: `ROWS` in `jagged.wgsl`.
+pub(super) const ROWS: u32 = 64;
+
+/// Kernels that blend short lists, by the sizes of [`crate::wgsl::network::SIZES`].
+const ENTRIES: [&str; 4] = ["shade_8", "shade_16", "shade_32", "shade_64"];
+
 /// Workgroups that share large triangles, as long as that is enough.
 const GROUPS: u32 = 2048;
 
 /// Iterations of a workgroup over large triangles, at most: llvmpipe ends loops after 65,535.
 const SHARED: u64 = 1 << 15;
 
-/// Of a pixel: opaque surface, picture, count and offset of its list, head. Of a fragment: an entry
-/// and one more in order; or a node.
-pub(super) fn need(layout: Layout) -> Need {
-    Need {
-        what: match layout {
-            Layout::Blocks => "blocks",
-            Layout::Regions => "regions",
-        },
-        pixel: 2 * 4 + 16 + 3 * 4,
-        node: 16,
-        pixels_max: u64::from(u32::MAX),
-    }
-}
+/// Of a pixel: opaque surface, picture, list, offset of a row, longest lists. Of a fragment: an entry,
+/// and one more while long lists are put in order.
+pub(super) const NEED: Need = Need {
+    what: "jagged",
+    pixel: 2 * 4 + 16 + LIST + 2 * 4,
+    node: 16,
+    pixels_max: u64::MAX,
+};
 
 /// A band on the device.
 pub(super) struct Room<'r, 'g> {
@@ -38,10 +42,10 @@ pub(super) struct Room<'r, 'g> {
     pub(super) tiles: u32,
     /// Lists of the band.
     pub(super) lists: u32,
-    /// All buffers by the names of variables. `counts` and `offsets` are those of lists.
+    /// All buffers by the names of variables.
     buffers: Vec<(&'static str, wgpu::Buffer)>,
     /// Triangles of each tile, while they are counted.
-    of_tiles: wgpu::Buffer,
+    in_tiles: wgpu::Buffer,
 }
 
 impl<'r, 'g> Room<'r, 'g> {
@@ -59,17 +63,20 @@ impl<'r, 'g> Room<'r, 'g> {
         let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
         let buffers = vec![
             ("bins", words("offsets of tiles", tiles + 1)?),
-            ("sums", words("sums of parts", lists.div_ceil(TILE))?),
+            ("sums", words("sums of parts", tiles.div_ceil(TILE))?),
             ("larges", words("large triangles", rasterizer.prims() + 1)?),
-            // Made anew once they are counted.
+            // Both are made anew once it is known how many there are.
             ("binned", words("triangles in tiles", 0)?),
-            ("counts", words("counts of lists", lists)?),
-            ("offsets", words("offsets of lists", lists + 1)?),
+            ("listed", words("entries of lists", 0)?),
+            ("lists", gpu.storage("lists", LIST * u64::from(lists))?),
+            ("rows", words("rows of tiles", lists)?),
+            ("longest", words("longest lists", lists + 2)?),
+            ("counter", words("counter", 1)?),
             ("unfinished", words("unfinished", 1)?),
             ("picture", gpu.storage("picture", 16 * u64::from(pixels))?),
         ];
         Ok(Self {
-            of_tiles: words("triangles of tiles", tiles)?,
+            in_tiles: words("triangles of tiles", tiles)?,
             rasterizer,
             frame,
             tiles,
@@ -93,7 +100,7 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Bytes of all buffers.
     pub(super) fn bytes(&self) -> u64 {
         let own = self.buffers.iter().map(|(_, buffer)| buffer.size());
-        own.sum::<u64>() + self.of_tiles.size()
+        own.sum::<u64>() + self.in_tiles.size()
     }
 
     /// Exchanges the entries with those that the last pass left in order.
@@ -136,9 +143,9 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Counts the triangles of each tile, and where its bin begins.
     pub(super) fn count_bins(&self, opaque: bool) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(opaque, 0);
-        let others = [("counts", &self.of_tiles), ("offsets", self.get("bins"))];
+        let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
         let small = self.pass_with("bin_count", tiled, tiled.items.div_ceil(WORKGROUP), &others)?;
-        let small = small.after_clearing(self.of_tiles.clone());
+        let small = small.after_clearing(self.in_tiles.clone());
         let mut passes = vec![
             small.after_clearing(self.get("larges").clone()),
             self.pass_with("bin_count_large", tiled, tiled.groups, &others)?,
@@ -150,7 +157,7 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Fills the bins, which have room for so many triangles.
     pub(super) fn fill_bins(&self, opaque: bool, binned: u32) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(opaque, binned);
-        let others = [("counts", &self.of_tiles), ("offsets", self.get("bins"))];
+        let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
         Ok(vec![
             self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
             self.pass_with("bin_fill_large", tiled, tiled.groups, &others)?,
@@ -210,54 +217,70 @@ impl<'r, 'g> Room<'r, 'g> {
         Ok(passes)
     }
 
-    /// Counts the fragments of each list, and where it begins.
-    pub(super) fn count_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
-        let mut passes = self.drawn("blocks_count", 0, bins)?;
-        if let Some(first) = passes.first_mut() {
-            first.clear(self.get("counts").clone());
-        }
-        passes.extend(self.offsets(self.lists, &[])?);
+    /// Counts the fragments of each list, and says where they will be.
+    pub(super) fn place_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
+        let mut passes = self.drawn("jagged_count", 0, bins)?;
+        let place = self.pass("jagged_place", self.of_tiles(), self.tiles)?;
+        let place = place.after_clearing(self.get("counter").clone());
+        passes.push(place.after_clearing(self.get("longest").clone()));
         Ok(passes)
     }
 
-    /// Puts so many entries in order, in lists of at most `longest`. Where passes exchange them,
-    /// [`Self::swap`] follows each; how often is told.
-    pub(super) fn sort_lists(
-        &mut self,
-        entries: u32,
-        longest: u32,
-    ) -> Result<(Vec<Ready>, u32), GpuError> {
-        let tiled = |items, run| Tiled {
-            items,
-            run,
+    fn of_tiles(&self) -> Tiled {
+        Tiled {
+            items: self.tiles,
+            layers: u32::MAX,
             ..Tiled::default()
-        };
-        let sort = self.pass(
-            "blocks_sort",
-            tiled(self.lists, 0),
-            self.lists.div_ceil(WORKGROUP),
-        )?;
-        let mut passes = vec![sort];
-        let mut swaps = 0;
-        for (entry, run) in long_passes(["blocks_runs", "blocks_merge"], longest) {
-            passes.push(self.pass(entry, tiled(entries, run), entries.div_ceil(WORKGROUP))?);
-            self.swap();
-            swaps += 1;
         }
-        Ok((passes, swaps))
     }
 
-    /// Blends lists of at most `longest`.
-    pub(super) fn shade(&self, longest: u32) -> Result<Vec<Ready>, GpuError> {
+    /// Puts lists that are too long for registers in order, `count` of them longer than a workgroup
+    /// sorts, and the longest of all `length`.
+    pub(super) fn sort_lists(&mut self, length: u32, count: u32) -> Result<Vec<Ready>, GpuError> {
         let mut passes = Vec::new();
-        for first in (0..longest.max(1)).step_by(STEPS as usize) {
+        if length <= ROWS {
+            return Ok(passes);
+        }
+        passes.push(self.pass("jagged_sort", self.of_tiles(), self.tiles)?);
+        let groups = length.div_ceil(WORKGROUP);
+        let mut long: Vec<_> = long_passes(["jagged_runs", "jagged_merge"], length).collect();
+        if long.len() % 2 == 1 {
+            // What is in order is copied back to where all other lists are.
+            long.push(("jagged_merge", length.next_power_of_two()));
+        }
+        for (entry, run) in long {
             let tiled = Tiled {
-                items: self.tiles,
-                first,
-                count: STEPS,
+                run,
+                groups,
                 ..Tiled::default()
             };
-            passes.push(self.pass("shade", tiled, self.tiles)?);
+            passes.push(self.pass(entry, tiled, groups * count)?);
+            self.swap();
+        }
+        Ok(passes)
+    }
+
+    /// Blends lists of which the longest has so many entries; `stored`: short ones are written back
+    /// in order as well.
+    pub(super) fn shade(&self, length: u32, stored: bool) -> Result<Vec<Ready>, GpuError> {
+        let mut passes = Vec::new();
+        let short = Tiled {
+            stored: stored.into(),
+            ..self.of_tiles()
+        };
+        for (entry, least) in ENTRIES.into_iter().zip([0, 9, 17, 33]) {
+            if least <= length {
+                passes.push(self.pass(entry, short, self.tiles)?);
+            }
+        }
+        let long = (length > ROWS).then_some(0..length).unwrap_or_default();
+        for first in long.step_by(STEPS as usize) {
+            let tiled = Tiled {
+                first,
+                count: STEPS,
+                ..self.of_tiles()
+            };
+            passes.push(self.pass("shade_long", tiled, self.tiles)?);
         }
         Ok(passes)
     }
@@ -267,5 +290,5 @@ impl<'r, 'g> Room<'r, 'g> {
 fn groups(prims: u32, tiles: u32) -> u32 {
     let of_each = u64::from(tiles.div_ceil(WORKGROUP)) + 1;
     let needed = (u64::from(prims) * of_each).div_ceil(SHARED);
-    u32::try_from(needed.max(GROUPS.into()).min(prims.into())).expect("at most the triangles")
+    u32::try_from(needed.max(GROUPS.into())).expect("fewer than triangles and tiles")
 }

@@ -39,28 +39,31 @@ impl<'r, 'g> Timed<'r, 'g> {
     pub fn new(rasterizer: &'r Rasterizer<'g>, options: &Options<'_>) -> Result<Self, GpuError> {
         let gpu = rasterizer.gpu;
         let mut room = attempt::room(rasterizer, options, Band::whole(rasterizer.size))?;
-        let longest = attempt::bins(&mut room, false)?;
-        let drawn = (longest, options.drawn);
-        attempt::submit(&room, &room.count_lists(drawn)?)?;
-        let offsets: Vec<u32> = gpu.read(room.get("offsets"), room.lists as usize + 1)?;
-        let fragments = offsets.last().copied().unwrap_or(0);
+        let (bins, _) = attempt::bins(&mut room, false)?;
+        let drawn = (attempt::longest(&bins), options.drawn);
+        attempt::submit(&room, &room.place_lists(drawn)?)?;
+        let fragments = gpu.word(room.get("counter"), 0)?;
+        let [longest, longs]: [u32; 2] = gpu.read(room.get("longest"), 1)?[0];
         for name in ["listed", "merged"] {
             room.set(
                 name,
                 gpu.storage("entries of lists", 8 * u64::from(fragments))?,
             );
         }
-        let longest = attempt::longest(&offsets);
         let binned = u32::try_from(room.get("binned").size() / 4).expect("a binding");
         let mut bin = room.count_bins(false)?;
         bin.extend(room.fill_bins(false, binned)?);
         let spans = vec![
             (Span::Bin, bin),
-            (Span::Count, room.count_lists(drawn)?),
-            (Span::Fill, room.drawn("blocks_fill", fragments, drawn)?),
-            (Span::Sort, room.sort_lists(fragments, longest)?.0),
-            (Span::Shade, room.shade(longest)?),
+            (Span::Count, room.place_lists(drawn)?),
+            (Span::Fill, room.drawn("jagged_fill", fragments, drawn)?),
+            (Span::Sort, room.sort_lists(longest, longs)?),
+            (Span::Shade, room.shade(longest, false)?),
         ];
+        let spans = spans
+            .into_iter()
+            .filter(|(_, passes)| !passes.is_empty())
+            .collect();
         Ok(Self {
             room,
             spans,

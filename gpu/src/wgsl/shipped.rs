@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::Sources;
+use super::{Sources, network};
 
 macro_rules! shipped {
     ($($name:literal),* $(,)?) => {
@@ -33,6 +33,7 @@ impl Sources {
             "grid",
             "hbao",
             "item",
+            "jagged",
             "lamp",
             "ldm",
             "maps",
@@ -73,6 +74,7 @@ impl Sources {
         if let (true, Some(text)) = (native, native_wide) {
             files.insert("wide".into(), text);
         }
+        files.insert("network".into(), network::text().into());
         Self(files)
     }
 }

@@ -44,6 +44,40 @@ pub const FAMILIES: &[Family] = &[
         no_corpus: None,
     },
     Family {
+        name: "tiles",
+        chain: Chain::Frame,
+        stages: &[
+            in_tiles(
+                "bin",
+                &[
+                    "bin_count",
+                    "bin_count_large",
+                    "bin_parts",
+                    "bin_sums",
+                    "bin_offsets",
+                    "bin_fill",
+                    "bin_fill_large",
+                ],
+            ),
+            in_tiles(
+                "jagged",
+                &[
+                    "jagged_count",
+                    "jagged_place",
+                    "jagged_fill",
+                    "jagged_sort",
+                    "jagged_runs",
+                    "jagged_merge",
+                ],
+            ),
+            in_tiles(
+                "shade",
+                &["shade_8", "shade_16", "shade_32", "shade_64", "shade_long"],
+            ),
+        ],
+        no_corpus: Some("every scene of a frame goes through it"),
+    },
+    Family {
         name: "grid",
         chain: Chain::Rays,
         stages: &[
@@ -122,6 +156,14 @@ const fn per_pixel(name: &'static str, entries: &'static [&'static str]) -> Stag
         name,
         compute: Twin::Entries(entries),
         fragment: Twin::None("works on pixels, not on triangles: one kernel serves both paths"),
+    }
+}
+
+const fn in_tiles(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("tiles are drawn by workgroups, not by the hardware's rasteriser"),
     }
 }
 

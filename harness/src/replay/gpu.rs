@@ -4,6 +4,7 @@ mod from;
 mod judge;
 mod lists;
 mod path_name;
+mod tiles;
 mod vertices;
 
 use std::borrow::Cow;
@@ -88,6 +89,7 @@ impl GpuLeg<'_> {
         self.judge_lists(&seen, rows);
         self.judge_sort(&seen, rows);
         self.judge_resolve(&seen, rows);
+        self.tiles(&rasterizer, rows)?;
         Ok(seen)
     }
 

@@ -1,0 +1,114 @@
+//! WGSL that is written by a program: sorting networks on scalars.
+//!
+//! An invocation's array that is indexed by a variable lies in memory; a variable for each entry
+//! lies in a register. So there is a function for each size, with every comparison written out:
+//! Batcher's odd-even merge sort (1968), 19, 63, 191 and 543 comparisons for 8, 16, 32 and 64
+//! entries.
+
+use std::fmt::Write;
+
+/// Entries that the networks sort.
+pub const SIZES: [u32; 4] = [8, 16, 32, 64];
+
+/// The file `network`: for each size a function that sorts and blends a list of at most as many.
+pub(super) fn text() -> String {
+    let mut text = String::from("// Lists of a few entries, sorted in registers and blended.\n");
+    for size in SIZES {
+        shaded(&mut text, size).expect("a string takes all that is written");
+    }
+    text
+}
+
+/// Reads a list, puts it in order, writes it back if that is asked for, and blends what lies in
+/// front of the key `end`.
+fn shaded(text: &mut String, size: u32) -> std::fmt::Result {
+    writeln!(
+        text,
+        "\nfn shaded_{size}(run: Run, end: u32) -> vec4<f32> {{"
+    )?;
+    for i in 0..size {
+        writeln!(text, "    var e{i} = LAST;")?;
+    }
+    for i in 0..size {
+        let read = format!("e{i} = listed[slot(run, {i}u)]");
+        writeln!(text, "    if {i}u < run.length {{\n        {read};\n    }}")?;
+    }
+    for (a, b) in comparisons(size) {
+        exchange(text, a, b)?;
+    }
+    writeln!(text, "    if tiled.stored != 0u {{")?;
+    for i in 0..size {
+        writeln!(
+            text,
+            "        if {i}u < run.length {{\n            listed[slot(run, {i}u)] = e{i};\n        }}"
+        )?;
+    }
+    writeln!(text, "    }}\n    var seen = vec4(0.0, 0.0, 0.0, 1.0);")?;
+    for i in 0..size {
+        writeln!(
+            text,
+            "    if e{i}.x < end && {i}u < tiled.layers {{\n        seen = over(seen, e{i}.y);"
+        )?;
+    }
+    writeln!(text, "    {}", "}".repeat(size as usize))?;
+    writeln!(text, "    return seen;\n}}")
+}
+
+/// The smaller of two entries to the first, without a branch.
+fn exchange(text: &mut String, a: u32, b: u32) -> std::fmt::Result {
+    writeln!(
+        text,
+        "    {{\n        let swaps = less(e{b}, e{a});\n        let e = e{a};"
+    )?;
+    writeln!(text, "        e{a} = select(e, e{b}, swaps);")?;
+    writeln!(text, "        e{b} = select(e{b}, e, swaps);\n    }}")
+}
+
+/// Pairs of places in the order in which they are compared: the smaller goes to the first.
+fn comparisons(size: u32) -> Vec<(u32, u32)> {
+    let mut pairs = Vec::new();
+    let mut run = 1;
+    while run < size {
+        let mut reach = run;
+        while reach > 0 {
+            for first in (reach % run..size - reach).step_by(2 * reach as usize) {
+                for a in first..(first + reach).min(size - reach) {
+                    let b = a + reach;
+                    if a / (2 * run) == b / (2 * run) {
+                        pairs.push((a, b));
+                    }
+                }
+            }
+            reach /= 2;
+        }
+        run *= 2;
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A network sorts all if it sorts zeros and ones (Knuth, The Art of Computer Programming 3,
+    /// section 5.3.4, theorem Z).
+    #[test]
+    fn networks_sort() {
+        assert_eq!(
+            SIZES.map(|size| comparisons(size).len()),
+            [19, 63, 191, 543]
+        );
+        for size in [8, 16] {
+            for bits in 0..1_u32 << size {
+                let mut bits = bits;
+                for (a, b) in comparisons(size) {
+                    if bits >> a & 1 > bits >> b & 1 {
+                        bits ^= 1 << a | 1 << b;
+                    }
+                }
+                let ones = bits.count_ones();
+                assert_eq!(u64::from(bits), ((1_u64 << ones) - 1) << (size - ones));
+            }
+        }
+    }
+}

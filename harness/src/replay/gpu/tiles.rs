@@ -1,0 +1,124 @@
+//! The same lists by tiles: bins, lists as they lie side by side, picture.
+
+use triptych_gpu::abuffer::BandResult;
+use triptych_gpu::error::GpuError;
+use triptych_gpu::raster::{Path, Rasterizer};
+use triptych_gpu::tiles::{self, Drawn};
+use triptych_spec::abuffer::Sorted;
+use triptych_spec::tiles::bin;
+
+use super::{From, GpuLeg};
+use crate::compare::{self, Judgement, compare};
+use crate::observe::{self, Observed};
+use crate::replay::rows::Rows;
+use crate::row::Class;
+
+/// The stages, and how each is compared.
+const STAGES: [(&str, Class); 3] = [
+    ("bin", Class::Exact),
+    ("jagged", Class::Structure),
+    ("shade", Class::Interval),
+];
+
+impl GpuLeg<'_> {
+    /// Runs the stages on the spec's triangles and opaque surfaces, and adds a row for each. They have
+    /// no twin on the fragment path.
+    pub(super) fn tiles(
+        &self,
+        rasterizer: &Rasterizer<'_>,
+        rows: &mut Rows,
+    ) -> Result<(), GpuError> {
+        if self.path == Path::Fragment {
+            return Ok(());
+        }
+        for (stage, class) in STAGES {
+            if let Some(reason) = self.reason_not_run(stage, From::Build) {
+                rows.skip(stage, &self.spec.label, &self.label(), class, reason);
+            }
+        }
+        if self.reason_not_run("jagged", From::Build).is_some() {
+            return Ok(());
+        }
+        let options = tiles::Options {
+            opaque: &self.spec.value.opaque,
+            depth_test: self.plan.depth_test,
+            background: self.scene.background,
+            capacity: self.capacity,
+            drawn: tiles::DRAWN,
+        };
+        let drawn = tiles::run(rasterizer, options)?;
+        let seen = Observed::<observe::Gpu, _>::new(self.label(), drawn);
+        self.judge_bins(&seen, rows);
+        self.judge_jagged(&seen, rows);
+        self.judge_shade(&seen, rows);
+        Ok(())
+    }
+
+    fn judge_bins(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) {
+        let own = &self.spec.value;
+        let spec = self.spec.derive(&own.primitives);
+        let gpu = seen.map(|s| &s.bins).taking(seen.value.times.bin);
+        let judgement = compare(&spec, &gpu, |primitives, bins| {
+            Judgement::sum(bins.iter().map(|(band, offsets, prims)| {
+                let rows = band.first..band.first + band.rows;
+                let must = bin(primitives, rows, |prim| !own.is_opaque(prim));
+                compare::tiles::bins(&must, offsets, prims)
+            }))
+        });
+        rows.add("bin", &spec, &gpu, judgement);
+    }
+
+    /// Lists as they were filled, and then their order.
+    fn judge_jagged(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) {
+        let spec = self.spec.derive(&self.spec.value.sorted);
+        let gpu = seen.map(|s| &s.bands).taking(seen.value.times.jagged);
+        let width = self.scene.size.width;
+        let judgement = compare(&spec, &gpu, |spec, bands| {
+            let filled =
+                |b: &BandResult| compare::lists::compare(&self.expected(spec, b.band), &b.built);
+            let ordered = |b: &BandResult| {
+                let must = part(spec, b, width);
+                let sorted = b.sorted.as_ref()?;
+                Some(compare::order::compare(&must, sorted, width))
+            };
+            let filled = Judgement::sum(bands.iter().map(filled));
+            match filled.differ() {
+                0 => Judgement {
+                    compared: filled.compared,
+                    ..Judgement::sum([filled].into_iter().chain(bands.iter().filter_map(ordered)))
+                },
+                _ => filled,
+            }
+        });
+        rows.add("jagged", &spec, &gpu, judgement);
+    }
+
+    fn judge_shade(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) {
+        let spec = self.spec.derive(&self.spec.value.image);
+        let gpu = seen.map(|s| &s.image).taking(seen.value.times.shade);
+        let width = self.scene.size.width;
+        let judgement = compare(&spec, &gpu, |a, b| compare::image::compare(a, b, width));
+        rows.add("shade", &spec, &gpu, judgement);
+    }
+}
+
+/// The spec's lists of a band, with pixels counted from its first.
+fn part(all: &Sorted, band: &BandResult, width: u32) -> Sorted {
+    let first = (band.band.first * width) as usize;
+    let end = first + (band.band.rows * width) as usize;
+    let before = all.offsets[first];
+    let own = before as usize..all.offsets[end] as usize;
+    Sorted {
+        offsets: all.offsets[first..=end]
+            .iter()
+            .map(|o| o - before)
+            .collect(),
+        fragments: all.fragments[own]
+            .iter()
+            .map(|f| triptych_spec::raster::Fragment {
+                pixel: f.pixel - band.band.first * width,
+                ..*f
+            })
+            .collect(),
+    }
+}
