@@ -12,6 +12,8 @@
 //! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
 //! | `abuffer` | lists, capacity, conservation, permutation, order of insertion |
 //! | `abuffer::resolve` | closed forms and bounds of blending; powers of two |
+//! | `tiles` | bins hold what is covered; lists and pictures are those of `abuffer`; nothing between entries |
+//! | `tiles::adapters` | however few triangles a dispatch draws |
 //! | `grid::rays` | brute force; reversal, parts, translation, splits, resolution; exact arithmetic |
 //! | `grid::cells` | which cells list a triangle; linked lists; bricks; boundaries; limits |
 //! | `grid::kernel` | no arithmetic that WGSL allows leads past what a ray meets |
@@ -68,6 +70,8 @@ mod raster;
 mod rsm;
 #[path = "laws/samples.rs"]
 mod samples;
+#[path = "laws/tiles.rs"]
+mod tiles;
 #[path = "laws/vertex.rs"]
 mod vertex;
 #[path = "laws/world.rs"]

@@ -16,8 +16,8 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 9] = [
-    "abuffer", "ceiling", "grid", "hbao", "ldm", "nearest", "raster", "rsm", "vertex",
+const ROOTS: [&str; 10] = [
+    "abuffer", "ceiling", "grid", "hbao", "ldm", "nearest", "raster", "rsm", "tiles", "vertex",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.

@@ -12,16 +12,15 @@ use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::Opaque;
+use triptych_spec::tiles::SIDE;
 
 use crate::abuffer::BandResult;
 use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
 use crate::raster::{Attempts, Rasterizer};
 use attempt::Tried;
+pub use linked::{CONTIGUOUS, List};
 pub use timed::{Span, Timed};
-
-/// Pixels along a side of a tile. Twin: `SIDE` in `tile.wgsl`.
-pub const SIDE: u32 = 8;
 
 /// Triangles of a tile that one dispatch draws. llvmpipe leaves every loop of an invocation after
 /// 65,535 iterations in all; a triangle takes one, 64 of them one more.

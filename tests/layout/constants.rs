@@ -7,11 +7,13 @@ use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
+use triptych_gpu::tiles::CONTIGUOUS;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
 use triptych_spec::ldm::{PLANE_BITS, WEIGHT_BITS};
 use triptych_spec::rsm::{COARSE_BITS, PLACE_MAX};
+use triptych_spec::tiles::{ROWS, SIDE};
 use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
 
 use super::everywhere;
@@ -53,6 +55,9 @@ fn constants_are_those_of_rust() {
         ("LARGE_AT_ONCE", i64::from(LARGE_AT_ONCE)),
         ("PLANE_BITS", i64::from(PLANE_BITS)),
         ("WEIGHT_BITS", i64::from(WEIGHT_BITS)),
+        ("SIDE", i64::from(SIDE)),
+        ("ROWS", i64::from(ROWS)),
+        ("CONTIGUOUS", i64::from(CONTIGUOUS)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

@@ -8,6 +8,7 @@ use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
 use triptych_gpu::ldm::Told;
 use triptych_gpu::rsm::{Parameters, View};
+use triptych_gpu::tiles::{List, Tiled};
 
 use super::everywhere;
 
@@ -106,6 +107,10 @@ fn what_is_told_of_maps_is_that_of_rust() {
     everywhere("Hits", &words(&["key", "before", "behind"]), layout);
     everywhere("Open", &words(&["whole", "part"]), layout);
     everywhere("Link", &words(&["key", "next"]), layout);
+    let tiled = layout_of!(Tiled: items opaque capacity first count run groups layers stored);
+    everywhere("Tiled", &tiled, layout);
+    let list = layout_of!(List: start length filled);
+    everywhere("List", &list, layout);
 }
 
 #[test]

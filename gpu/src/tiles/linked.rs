@@ -2,9 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::{EOL, Lists, Node};
+use triptych_spec::tiles::{ROWS, SIDE};
 
-use super::room::ROWS;
-use super::{SIDE, tiles};
+use super::tiles;
 use crate::frame::{Band, WORKGROUP};
 
 /// A list as kernels have it. Twin: `List` in `jagged.wgsl`.

@@ -1,5 +1,7 @@
 //! Buffers of a band that is drawn by tiles, and the passes over them.
 
+use triptych_spec::tiles::ROWS;
+
 use super::{Tiled, lists, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -12,9 +14,6 @@ pub(super) const STEPS: u32 = 16_384;
 
 /// Bytes of a list. Twin: `List` in `jagged.wgsl`.
 const LIST: u64 = 12;
-
-/// Entries of the longest list of a tile with rows. Twin: `ROWS` in `jagged.wgsl`.
-pub(super) const ROWS: u32 = 64;
 
 /// Kernels that blend short lists, by the sizes of [`crate::wgsl::network::SIZES`].
 const ENTRIES: [&str; 4] = ["shade_8", "shade_16", "shade_32", "shade_64"];

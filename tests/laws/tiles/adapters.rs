@@ -1,0 +1,45 @@
+//! Tiles on every adapter: what a run of few triangles cannot show.
+
+use triptych_gpu::raster::{Path, Rasterizer};
+use triptych_gpu::tiles::{Options, run};
+use triptych_harness::compare::order::flatten;
+use triptych_spec::abuffer::{build, opaque, sort};
+
+use super::stack;
+use crate::adapters::devices;
+
+/// However few triangles a dispatch draws, lists that lie in rows and such that do not are whole.
+#[test]
+fn dispatches_go_on_where_the_last_one_stopped() {
+    for depth in [40, 100, 600] {
+        let layers = stack(depth);
+        let primitives = &layers.primitives;
+        let surfaces = opaque(&layers.scene, primitives);
+        let must = sort(&build(
+            &layers.scene,
+            primitives,
+            &surfaces,
+            false,
+            u32::MAX,
+        ));
+        let faces = vec![[0.5, 0.25, 0.125, 0.5]; depth as usize];
+        for (gpu, kernels) in devices() {
+            let rasterizer = Rasterizer::new(gpu, &kernels[0], Path::Compute, primitives, &faces);
+            let rasterizer = rasterizer.expect("few triangles");
+            for drawn in [1, 7, 64, 1000] {
+                let options = Options {
+                    opaque: &surfaces,
+                    depth_test: false,
+                    background: [1.0; 3],
+                    capacity: None,
+                    drawn,
+                };
+                let seen = run(&rasterizer, options).expect("it runs");
+                let lists = seen.bands[0].sorted.as_ref().and_then(flatten);
+                let words = format!("{}, {depth} layers, {drawn} at once", gpu.name);
+                assert_eq!(lists.as_ref(), Some(&must), "{words}");
+                assert_eq!(seen.image.len(), 81, "{words}");
+            }
+        }
+    }
+}
