@@ -84,7 +84,7 @@ pub struct Drawn {
 pub struct Times {
     /// Stage bin.
     pub bin: Duration,
-    /// Stage jagged, with the lists that are too long to be put in order while they are blended.
+    /// Stage jagged.
     pub jagged: Duration,
     /// Stage shade.
     pub shade: Duration,

@@ -131,9 +131,9 @@ fn jagged_fill(
     }
 }
 
-// Longer lists in order; 64 of them.
+// Stage shade: lists that are too long for registers, in order; 64 of them.
 @compute @workgroup_size(WORKGROUP)
-fn jagged_sort(
+fn shade_sort(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -148,7 +148,7 @@ fn jagged_sort(
 
 // The longest lists: runs in order; one entry. Of a list, `groups` workgroups take all entries.
 @compute @workgroup_size(WORKGROUP)
-fn jagged_runs(
+fn shade_runs(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -161,7 +161,7 @@ fn jagged_runs(
 
 // The same: two runs in order become one; one entry.
 @compute @workgroup_size(WORKGROUP)
-fn jagged_merge(
+fn shade_merge(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -185,7 +185,7 @@ fn long_entry(group: u32, lane: u32) -> Entry {
     return Entry(at, run.start, run.start + run.length);
 }
 
-// Stage shade: the lists of up to 8 entries, sorted and blended over what lies behind.
+// The lists of up to 8 entries, sorted in registers and blended over what lies behind.
 @compute @workgroup_size(WORKGROUP)
 fn shade_8(
     @builtin(workgroup_id) group: vec3<u32>,

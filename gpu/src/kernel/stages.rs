@@ -94,27 +94,29 @@ pub const STAGES: [Stage; 30] = [
     Stage {
         name: "jagged",
         file: "tiles",
-        compute: &[
-            "jagged_count",
-            "jagged_place",
-            "jagged_fill",
-            "jagged_sort",
-            "jagged_runs",
-            "jagged_merge",
-        ],
+        compute: &["jagged_count", "jagged_place", "jagged_fill"],
         fragment: &[],
         contract: "A workgroup for each tile of tiled.items: counts the fragments of each pixel from \
             the triangles tiled.first of its bin on, tiled.count of them; places the lists as jagged \
-            diagonals; fills them with key and triangle. Lists of more than 64 lie one after another, \
-            and are put in order.",
+            diagonals; fills them with key and triangle. Lists of more than 64 lie one after another.",
     },
     Stage {
         name: "shade",
         file: "tiles",
-        compute: &["shade_8", "shade_16", "shade_32", "shade_64", "shade_long"],
+        compute: &[
+            "shade_sort",
+            "shade_runs",
+            "shade_merge",
+            "shade_8",
+            "shade_16",
+            "shade_32",
+            "shade_64",
+            "shade_long",
+        ],
         fragment: &[],
-        contract: "Puts lists of at most so many entries in order, writes them back if tiled.stored \
-            says so, and blends them into `picture`; longer ones are in order already.",
+        contract: "Puts lists of more than 64 entries in order, in several passes; those of at most \
+            8, 16, 32 and 64 in registers, from where they are written back if tiled.stored says so. \
+            Blends both into `picture`, in front of the opaque key only.",
     },
     Stage {
         name: "count",

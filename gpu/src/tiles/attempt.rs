@@ -126,8 +126,8 @@ fn jagged(
     };
     let built = linked(room)?;
     let sort = room.sort_lists(longest, longs)?;
-    times.jagged += submit(room, &sort)?;
-    times.shade = submit(room, &room.shade(longest, true)?)?;
+    times.shade = submit(room, &sort)?;
+    times.shade += submit(room, &room.shade(longest, true)?)?;
     let result = BandResult {
         band,
         sorted: Some(linked(room)?),

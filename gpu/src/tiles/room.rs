@@ -240,12 +240,12 @@ impl<'r, 'g> Room<'r, 'g> {
         if length <= ROWS {
             return Ok(passes);
         }
-        passes.push(self.pass("jagged_sort", self.of_tiles(), self.tiles)?);
+        passes.push(self.pass("shade_sort", self.of_tiles(), self.tiles)?);
         let groups = length.div_ceil(WORKGROUP);
-        let mut long: Vec<_> = long_passes(["jagged_runs", "jagged_merge"], length).collect();
+        let mut long: Vec<_> = long_passes(["shade_runs", "shade_merge"], length).collect();
         if long.len() % 2 == 1 {
             // What is in order is copied back to where all other lists are.
-            long.push(("jagged_merge", length.next_power_of_two()));
+            long.push(("shade_merge", length.next_power_of_two()));
         }
         for (entry, run) in long {
             let tiled = Tiled {

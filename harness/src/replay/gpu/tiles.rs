@@ -5,6 +5,7 @@ use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::tiles::{self, Drawn};
 use triptych_spec::abuffer::Sorted;
+use triptych_spec::raster::Fragment;
 use triptych_spec::tiles::bin;
 
 use super::{From, GpuLeg};
@@ -48,13 +49,25 @@ impl GpuLeg<'_> {
         };
         let drawn = tiles::run(rasterizer, options)?;
         let seen = Observed::<observe::Gpu, _>::new(self.label(), drawn);
-        self.judge_bins(&seen, rows);
-        self.judge_jagged(&seen, rows);
-        self.judge_shade(&seen, rows);
+        let skip = |stage, class, reason: &str, rows: &mut Rows| {
+            rows.skip(stage, &self.spec.label, &self.label(), class, reason.into());
+        };
+        let mut because = None;
+        if !self.judge_bins(&seen, rows) {
+            because = Some("the bins differ, see bin");
+            skip("jagged", Class::Structure, "the bins differ, see bin", rows);
+        } else if !self.judge_jagged(&seen, rows) {
+            because = Some("the lists differ, see jagged");
+        }
+        match because {
+            Some(reason) => skip("shade", Class::Interval, reason, rows),
+            None => self.judge_shade(&seen, rows),
+        }
         Ok(())
     }
 
-    fn judge_bins(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) {
+    /// Whether all bins are right: what follows from others says nothing of later stages.
+    fn judge_bins(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) -> bool {
         let own = &self.spec.value;
         let spec = self.spec.derive(&own.primitives);
         let gpu = seen.map(|s| &s.bins).taking(seen.value.times.bin);
@@ -65,39 +78,43 @@ impl GpuLeg<'_> {
                 compare::tiles::bins(&must, offsets, prims)
             }))
         });
+        let agrees = judgement.differ() == 0;
         rows.add("bin", &spec, &gpu, judgement);
+        agrees
     }
 
-    /// Lists as they were filled, and then their order.
-    fn judge_jagged(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) {
+    /// Lists as they were filled; whether they are right.
+    fn judge_jagged(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) -> bool {
         let spec = self.spec.derive(&self.spec.value.sorted);
         let gpu = seen.map(|s| &s.bands).taking(seen.value.times.jagged);
-        let width = self.scene.size.width;
         let judgement = compare(&spec, &gpu, |spec, bands| {
             let filled =
                 |b: &BandResult| compare::lists::compare(&self.expected(spec, b.band), &b.built);
-            let ordered = |b: &BandResult| {
-                let must = part(spec, b, width);
-                let sorted = b.sorted.as_ref()?;
-                Some(compare::order::compare(&must, sorted, width))
-            };
-            let filled = Judgement::sum(bands.iter().map(filled));
-            match filled.differ() {
-                0 => Judgement {
-                    compared: filled.compared,
-                    ..Judgement::sum([filled].into_iter().chain(bands.iter().filter_map(ordered)))
-                },
-                _ => filled,
-            }
+            Judgement::sum(bands.iter().map(filled))
         });
+        let agrees = judgement.differ() == 0;
         rows.add("jagged", &spec, &gpu, judgement);
+        agrees
     }
 
+    /// The picture, and the lists in order.
     fn judge_shade(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) {
-        let spec = self.spec.derive(&self.spec.value.image);
-        let gpu = seen.map(|s| &s.image).taking(seen.value.times.shade);
+        let spec = self.spec.derive(&self.spec.value);
+        let gpu = seen.map(|s| s).taking(seen.value.times.shade);
         let width = self.scene.size.width;
-        let judgement = compare(&spec, &gpu, |a, b| compare::image::compare(a, b, width));
+        let judgement = compare(&spec, &gpu, |spec, drawn| {
+            let ordered = |b: &BandResult| {
+                let sorted = b.sorted.as_ref()?;
+                Some(compare::order::compare(
+                    &part(&spec.sorted, b, width),
+                    sorted,
+                    width,
+                ))
+            };
+            let picture = compare::image::compare(&spec.image, &drawn.image, width);
+            let ordered = drawn.bands.iter().filter_map(ordered);
+            Judgement::sum([picture].into_iter().chain(ordered))
+        });
         rows.add("shade", &spec, &gpu, judgement);
     }
 }
@@ -115,7 +132,7 @@ fn part(all: &Sorted, band: &BandResult, width: u32) -> Sorted {
             .collect(),
         fragments: all.fragments[own]
             .iter()
-            .map(|f| triptych_spec::raster::Fragment {
+            .map(|f| Fragment {
                 pixel: f.pixel - band.band.first * width,
                 ..*f
             })
