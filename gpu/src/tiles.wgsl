@@ -7,6 +7,7 @@
 //#import scan
 //#import sort
 //#import jagged
+//#import shown
 //#import network
 
 // A fragment in a list: depth key and triangle. Nearest first, ties by triangle.
@@ -172,19 +173,6 @@ fn shade_merge(
     }
 }
 
-struct Entry {
-    at: u32,
-    start: u32,
-    end: u32,
-}
-
-fn long_entry(group: u32, lane: u32) -> Entry {
-    let list = longest.lists[group / tiled.groups];
-    let run = run_at(list / WORKGROUP, list % WORKGROUP);
-    let at = run.start + group % tiled.groups * WORKGROUP + lane;
-    return Entry(at, run.start, run.start + run.length);
-}
-
 // The lists of up to 8 entries, sorted in registers and blended over what lies behind.
 @compute @workgroup_size(WORKGROUP)
 fn shade_8(
@@ -246,14 +234,15 @@ fn shade_long(
     if own.pixel == NOWHERE || own.run.row != CONTIGUOUS {
         return;
     }
-    if tiled.first > 0u && tiled.first >= own.run.length {
+    let length = min(own.run.length, tiled.layers);
+    if tiled.first > 0u && tiled.first >= length {
         return;
     }
     var seen = vec4(0.0, 0.0, 0.0, 1.0);
     if tiled.first > 0u {
         seen = picture[own.pixel];
     }
-    let last = min(own.run.length, tiled.first + tiled.count);
+    let last = min(length, tiled.first + tiled.count);
     for (var i = tiled.first; i < last; i += 1u) {
         let entry = listed[own.run.start + i];
         if entry.x >= own.end {
@@ -261,46 +250,9 @@ fn shade_long(
         }
         seen = over(seen, entry.y);
     }
-    if last == own.run.length {
+    if last == length {
         shown(own.pixel, seen);
     } else {
         picture[own.pixel] = seen;
     }
-}
-
-// A pixel, its list, and the key of what is opaque there.
-struct Own {
-    pixel: u32,
-    run: Run,
-    end: u32,
-}
-
-fn pixel_at(tile: u32, lane: u32) -> Own {
-    if tile >= tiled.items {
-        return Own(NOWHERE, Run(0u, 0u, 0u), 0u);
-    }
-    let pixel = pixel_of(tile, lane);
-    if pixel == NOWHERE {
-        return Own(NOWHERE, Run(0u, 0u, 0u), 0u);
-    }
-    return Own(pixel, run_at(tile, lane), opaque_key[pixel]);
-}
-
-fn shown(pixel: u32, seen: vec4<f32>) {
-    picture[pixel] = vec4(seen.rgb + seen.a * behind(pixel), 1.0);
-}
-
-// The next layer under those that were seen.
-fn over(seen: vec4<f32>, prim: u32) -> vec4<f32> {
-    let layer = faces[prim];
-    return vec4(seen.rgb + seen.a * layer.a * layer.rgb, seen.a * (1.0 - layer.a));
-}
-
-// What lies behind a pixel's layers.
-fn behind(pixel: u32) -> vec3<f32> {
-    let prim = opaque_prim[pixel];
-    if prim == NOTHING {
-        return frame.background.rgb;
-    }
-    return faces[prim].rgb;
 }

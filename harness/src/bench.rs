@@ -6,7 +6,7 @@
 //! the `n` nearest layers. *Insertion* walks each list once, as it was built, and keeps
 //! the `n` nearest in an array (`nearest_layers`). *Sort* sorts the lists and stops
 //! after `n` layers; with all of them this is what a replay runs, stages sort and
-//! resolve. Not timed: transfers, compilation, and the vertex stages.
+//! resolve. *Tiles* are stages bin, jagged and shade, on the legs with a compute rasteriser. Not timed: transfers, compilation, and the vertex stages.
 //!
 //! Every round runs every leg and every variant once, so that whatever slows a machine
 //! down for a while slows all of them. Before the first that counts come [`WARM_UP`]
@@ -34,6 +34,7 @@ mod spec;
 pub mod spread;
 pub mod svg;
 pub mod table;
+mod tiles;
 mod warm;
 
 use std::time::Duration;
@@ -89,6 +90,8 @@ pub enum Method {
     Insertion,
     /// The sorted list, up to the last layer that is shown.
     Sort,
+    /// Lists laid out by tiles, sorted while they are blended.
+    Tiles,
 }
 
 impl Method {
@@ -97,6 +100,7 @@ impl Method {
         match self {
             Self::Insertion => "insertion",
             Self::Sort => "sort",
+            Self::Tiles => "tiles",
         }
     }
 }
@@ -145,7 +149,7 @@ pub struct Row {
 }
 
 impl Bench {
-    /// The faster method of each leg and number of layers: the legs in the order of the
+    /// The fastest method of each leg and number of layers: the legs in the order of the
     /// rows, and each leg's from one layer to all.
     pub fn fastest(&self) -> impl Iterator<Item = &Row> {
         let faster = |row: &Row| {
@@ -153,10 +157,8 @@ impl Bench {
                 (&other.scene, &other.leg, other.layers) == (&row.scene, &row.leg, row.layers)
                     && other.method != row.method
             };
-            let rival = self.rows.iter().find(rival);
-            rival.is_none_or(|other| {
-                (row.time.median, row.method) < (other.time.median, other.method)
-            })
+            let mut rivals = self.rows.iter().filter(rival);
+            rivals.all(|other| (row.time.median, row.method) < (other.time.median, other.method))
         };
         let mut fastest: Vec<&Row> = self.rows.iter().filter(|row| faster(row)).collect();
         let (scenes, legs) = (self.scenes(), self.legs());

@@ -127,7 +127,7 @@ fn jagged(
     let built = linked(room)?;
     let sort = room.sort_lists(longest, longs)?;
     times.shade = submit(room, &sort)?;
-    times.shade += submit(room, &room.shade(longest, true)?)?;
+    times.shade += submit(room, &room.shade(longest, u32::MAX, true)?)?;
     let result = BandResult {
         band,
         sorted: Some(linked(room)?),
@@ -147,7 +147,7 @@ pub(super) fn longest(offsets: &[u32]) -> u32 {
     lengths.max().unwrap_or(0)
 }
 
-fn picture(room: &Room<'_, '_>) -> Result<Vec<[f32; 3]>, GpuError> {
+pub(super) fn picture(room: &Room<'_, '_>) -> Result<Vec<[f32; 3]>, GpuError> {
     let pixels = (room.frame.width * room.frame.rows) as usize;
     let picture: Vec<[f32; 4]> = room.rasterizer.gpu.read(room.get("picture"), pixels)?;
     Ok(picture.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())

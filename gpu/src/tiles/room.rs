@@ -228,7 +228,6 @@ impl<'r, 'g> Room<'r, 'g> {
     fn of_tiles(&self) -> Tiled {
         Tiled {
             items: self.tiles,
-            layers: u32::MAX,
             ..Tiled::default()
         }
     }
@@ -259,11 +258,17 @@ impl<'r, 'g> Room<'r, 'g> {
         Ok(passes)
     }
 
-    /// Blends lists of which the longest has so many entries; `stored`: short ones are written back
-    /// in order as well.
-    pub(super) fn shade(&self, length: u32, stored: bool) -> Result<Vec<Ready>, GpuError> {
+    /// Blends so many layers of lists of which the longest has so many entries; `stored`: short ones
+    /// are written back in order as well.
+    pub(super) fn shade(
+        &self,
+        length: u32,
+        layers: u32,
+        stored: bool,
+    ) -> Result<Vec<Ready>, GpuError> {
         let mut passes = Vec::new();
         let short = Tiled {
+            layers,
             stored: stored.into(),
             ..self.of_tiles()
         };
@@ -277,6 +282,7 @@ impl<'r, 'g> Room<'r, 'g> {
             let tiled = Tiled {
                 first,
                 count: STEPS,
+                layers,
                 ..self.of_tiles()
             };
             passes.push(self.pass("shade_long", tiled, self.tiles)?);

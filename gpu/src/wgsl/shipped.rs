@@ -54,6 +54,7 @@ impl Sources {
             "scan",
             "screen",
             "search",
+            "shown",
             "slice",
             "sort",
             "surface",

@@ -16,6 +16,11 @@
 //! | sorted: head, key, triangle, picture; nodes and colours shown | `28 P + 32 S(n)` | |
 //! | resolve: the same with progress and the picture so far | `140 P + 32 S(all)` | |
 //!
+//! | bin, by tiles: triangle and its face twice, the face of opaque ones as well; its number in `B` bins | `72 T + 32 (T + U) + 4 B` | `2 B` |
+//! | place: number and triangle, opaque key; length written; list read and placed, row | `40 B + 44 P` | |
+//! | fill: number and triangle, opaque key; list, row, how far it is filled; entry | `40 B + 32 P + 8 F` | |
+//! | shade: list, row, surface, picture; entries; colours shown | `40 P + 8 F + 16 S(n)` | |
+//!
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
 //! triangles is far from this bound on purpose. The spec is held to the same bytes.
 
@@ -129,6 +134,19 @@ impl Counts {
         Work { bytes, atomics }
     }
 
+    /// What a frame by tiles must do beside stage opaque, with so many triangles in bins.
+    pub fn by_tiles(&self, binned: u64, layers: u32) -> Work {
+        let (p, triangles) = (self.pixels, self.transparent + self.opaque);
+        let bin = 2 * (36 * self.transparent + 16 * triangles) + 4 * binned;
+        let place = 40 * binned + 4 * p + 12 * p + 28 * p;
+        let fill = 40 * binned + 4 * p + 28 * p + 8 * self.fragments;
+        let shade = 16 * p + 8 * self.fragments + 24 * p + 16 * self.shown(layers);
+        Work {
+            bytes: bin + place + fill + shade,
+            atomics: 2 * binned,
+        }
+    }
+
     /// Bytes that a GPU leg holds: triangles with colours; of each pixel head, opaque key
     /// and triangle, and picture; node and colour of each fragment; sorting keeps its
     /// progress beside them. Arrays of invocations are not in memory.
@@ -136,6 +154,8 @@ impl Counts {
         let progress = match method {
             Method::Insertion => 0,
             Method::Sort => 32 * self.pixels,
+            // What tiles hold is what their buffers take.
+            Method::Tiles => return 52 * (self.transparent + self.opaque),
         };
         52 * (self.transparent + self.opaque) + 28 * self.pixels + 32 * self.fragments + progress
     }
@@ -180,6 +200,8 @@ mod tests {
         // Five are merged in three passes, one in none.
         assert_eq!(work(Part::Sort), must(520 + 20 * 2 * 5 * 3, 0));
         assert_eq!(work(Part::Resolve), must(700 + 352, 0));
+        let tiles = 2 * (36 * 2 + 16 * 3) + 84 * 7 + 116 * 5 + 16 * 11 + 16 * 5;
+        assert_eq!(counts.by_tiles(7, 2), must(tiles, 14));
         assert_eq!(counts.longest(), 5);
         assert_eq!(counts.memory(Method::Insertion), 156 + 140 + 352);
         assert_eq!(counts.memory(Method::Sort), 156 + 140 + 352 + 160);

@@ -4,13 +4,14 @@ use std::time::Instant;
 
 use triptych_gpu::abuffer::{Options, Part, Timed};
 use triptych_gpu::error::GpuError;
-use triptych_gpu::raster::Rasterizer;
+use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::abuffer::Lists;
 
 use super::error::Error;
 use super::reference::Grid;
 use super::scene::Measured;
+use super::tiles::ByTiles;
 use super::{AWAKE, Method};
 use crate::compare::compare;
 use crate::compare::image;
@@ -41,6 +42,8 @@ pub(super) struct Leg<'r> {
     board: bool,
     pub(super) grid: &'r Grid,
     timed: Timed<'r, 'r>,
+    /// The same frame by tiles, where the leg draws without the hardware's rasteriser.
+    tiles: Option<ByTiles<'r>>,
     timer: Timer,
     parts: Vec<Part>,
     errors: Vec<(Part, Error)>,
@@ -78,6 +81,10 @@ impl<'r> Leg<'r> {
         };
         timed.follow(longest, &grid.layers)?;
         sorted(&label, &timed.sorted()?, grid)?;
+        let tiles = match rasterizer.path {
+            Path::Fragment => None,
+            _ => Some(ByTiles::new(&label, rasterizer, grid, options, clock)?),
+        };
         let parts: Vec<Part> = timed.parts().collect();
         let spans = u32::try_from(parts.len()).expect("a few parts");
         let mut leg = Self {
@@ -87,6 +94,7 @@ impl<'r> Leg<'r> {
             board: rasterizer.gpu.info.device_type != wgpu::DeviceType::Cpu,
             grid,
             timed,
+            tiles,
             parts,
             errors: Vec::new(),
             rounds: Vec::new(),
@@ -117,6 +125,9 @@ impl<'r> Leg<'r> {
                 ));
             }
         })?;
+        if let Some(tiles) = &self.tiles {
+            tiles.compare(&self.label)?;
+        }
         match wrong {
             Some(words) => Err(Refusal::Wrong(words)),
             None => Ok(errors),
@@ -126,6 +137,9 @@ impl<'r> Leg<'r> {
     /// Runs everything once, and keeps no times.
     pub(super) fn warm_up(&self, round: u32) -> Result<(), Refusal> {
         self.timed.time(&self.timer, round)?;
+        if let Some(tiles) = &self.tiles {
+            tiles.time()?;
+        }
         Ok(())
     }
 
@@ -138,7 +152,7 @@ impl<'r> Leg<'r> {
         }
         let seconds = self.timed.time(&self.timer, round)?;
         self.rounds.push(seconds);
-        Ok(())
+        self.tiles.as_mut().map_or(Ok(()), ByTiles::round)
     }
 
     /// What a part that makes a picture stands for.
@@ -175,7 +189,27 @@ impl<'r> Leg<'r> {
                 work,
             }
         };
-        self.errors.iter().map(frame).collect()
+        let mut frames: Vec<Measured> = self.errors.iter().map(frame).collect();
+        if let Some(tiles) = &self.tiles {
+            frames.extend(tiles.measured(self.opaque().as_ref()));
+        }
+        frames
+    }
+
+    /// Stage opaque alone, where it runs.
+    fn opaque(&self) -> Option<Measured> {
+        let at = self.parts.iter().position(|part| *part == Part::Opaque)?;
+        Some(Measured {
+            method: Method::Sort,
+            layers: 0,
+            parts: vec![(
+                name(Part::Opaque),
+                self.rounds.iter().map(|r| r[at]).collect(),
+            )],
+            error: self.errors.first()?.1,
+            memory: 0,
+            work: self.grid.counts.work(Part::Opaque),
+        })
     }
 }
 

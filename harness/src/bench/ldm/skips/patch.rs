@@ -16,7 +16,7 @@ pub(super) const RUNS_OF_ONE: Patch = (
 /// A chain of one is merged like any other.
 pub(super) const CHAINS_OF_ONE: Patch = (
     "relink",
-    "    if !sorted {\n        sorted = nodes[head].next == EOL;\n    }\n",
+    "    if !sorted {\n        sorted = next_of(head) == EOL;\n    }\n",
     "",
 );
 

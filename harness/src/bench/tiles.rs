@@ -1,0 +1,145 @@
+//! The same frame by tiles: first its pictures are compared, then it is timed.
+
+use triptych_gpu::abuffer::Options;
+use triptych_gpu::raster::Rasterizer;
+use triptych_gpu::tiles::{self, Span, Timed};
+use triptych_gpu::timer::{Clock, Timer};
+
+use super::Method;
+use super::error::Error;
+use super::gpu::Refusal;
+use super::reference::Grid;
+use super::scene::Measured;
+use crate::compare::compare;
+use crate::compare::image;
+use crate::observe::{Gpu, Observed};
+
+/// A leg's frame by tiles.
+pub(super) struct ByTiles<'r> {
+    grid: &'r Grid,
+    timed: Timed<'r, 'r>,
+    timer: Timer,
+    spans: Vec<Span>,
+    errors: Vec<(u32, Error)>,
+    /// Seconds of each part, round by round.
+    rounds: Vec<Vec<f64>>,
+}
+
+impl<'r> ByTiles<'r> {
+    /// Sets it up, and compares every picture.
+    pub(super) fn new(
+        label: &str,
+        rasterizer: &'r Rasterizer<'r>,
+        grid: &'r Grid,
+        options: Options<'_>,
+        clock: &Clock,
+    ) -> Result<Self, Refusal> {
+        let options = tiles::Options {
+            opaque: &grid.run.opaque,
+            depth_test: options.depth_test,
+            background: options.background,
+            capacity: None,
+            drawn: tiles::DRAWN,
+        };
+        let timed = Timed::new(rasterizer, &options, &grid.layers)?;
+        let (seen, must) = (u64::from(timed.fragments), grid.counts.fragments);
+        if seen != must {
+            let words = format!("{label}: tiles count {seen} fragments, must be {must}");
+            return Err(Refusal::Wrong(words));
+        }
+        let spans: Vec<Span> = timed.spans().collect();
+        let count = u32::try_from(spans.len()).expect("a few parts");
+        let mut tiles = Self {
+            grid,
+            timer: Timer::new(rasterizer.gpu, clock, count)?,
+            timed,
+            spans,
+            errors: Vec::new(),
+            rounds: Vec::new(),
+        };
+        tiles.errors = tiles.compare(label)?;
+        Ok(tiles)
+    }
+
+    /// Compares every picture with the spec's of the same layers.
+    pub(super) fn compare(&self, label: &str) -> Result<Vec<(u32, Error)>, Refusal> {
+        let mut errors = Vec::new();
+        let mut wrong = None;
+        let width = self.grid.run.primitives.size.width;
+        self.timed.pictures(|layers, picture| {
+            let seen = picture.iter().map(|pixel| pixel.map(f64::from));
+            errors.push((layers, self.grid.error(seen)));
+            let seen = Observed::<Gpu, _>::new(label, picture);
+            let must = self.grid.picture(layers);
+            let judgement = compare(must, &seen, |a, b| image::compare(a, b, width));
+            if judgement.differ() > 0 || judgement.compared == 0 {
+                let first = judgement.described.first().cloned().unwrap_or_default();
+                let (differ, compared) = (judgement.differ(), judgement.compared);
+                wrong.get_or_insert(format!(
+                    "{label}, {layers} layers by tiles: {differ} of {compared} channels differ; \
+                     {first}"
+                ));
+            }
+        })?;
+        match wrong {
+            Some(words) => Err(Refusal::Wrong(words)),
+            None => Ok(errors),
+        }
+    }
+
+    /// Runs everything once.
+    pub(super) fn time(&self) -> Result<Vec<f64>, Refusal> {
+        Ok(self.timed.time(&self.timer)?)
+    }
+
+    /// Runs everything once, and keeps the times.
+    pub(super) fn round(&mut self) -> Result<(), Refusal> {
+        let seconds = self.time()?;
+        self.rounds.push(seconds);
+        Ok(())
+    }
+
+    /// The frames that were measured; `opaque` is what comes before them.
+    pub(super) fn measured(&self, opaque: Option<&Measured>) -> Vec<Measured> {
+        let frame = |(layers, error): &(u32, Error)| {
+            let belongs = |span: &Span| match span {
+                Span::Shade(n) => n == layers,
+                _ => true,
+            };
+            let spans = self
+                .spans
+                .iter()
+                .enumerate()
+                .filter(|(_, span)| belongs(span));
+            let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
+            let mut parts = Vec::new();
+            let counts = &self.grid.counts;
+            let mut work = counts.by_tiles(self.timed.binned.into(), *layers);
+            if let Some(opaque) = opaque {
+                parts.extend(opaque.parts.iter().cloned());
+                work = work.and(opaque.work);
+            }
+            parts.extend(spans.map(|(at, span)| (name(*span), seconds(at))));
+            Measured {
+                method: Method::Tiles,
+                layers: *layers,
+                parts,
+                error: *error,
+                memory: counts.memory(Method::Tiles) + self.timed.bytes(),
+                work,
+            }
+        };
+        self.errors.iter().map(frame).collect()
+    }
+}
+
+/// A part's name in results.
+fn name(span: Span) -> &'static str {
+    match span {
+        Span::Bin => "bin",
+        Span::Place => "place",
+        Span::Fill => "fill",
+        Span::Sort => "sort",
+        Span::Shade(_) => "blend",
+    }
+}
