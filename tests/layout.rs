@@ -16,8 +16,8 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 9] = [
-    "abuffer", "ceiling", "grid", "hbao", "ldm", "nearest", "raster", "rsm", "vertex",
+const ROOTS: [&str; 11] = [
+    "abuffer", "ceiling", "dual", "grid", "hbao", "ldm", "nearest", "peel", "raster", "rsm", "vertex",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
@@ -184,8 +184,8 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 18,
-        "three functions in three programs of two forms each"
+        seen, 30,
+        "three functions in five programs of two forms each"
     );
 }
 

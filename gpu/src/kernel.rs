@@ -134,6 +134,12 @@ impl Kernels {
         self.fault
     }
 
+    /// Whether two files are alike, as where one stands in for the other.
+    pub fn alike(&self, file: &str, other: &str) -> bool {
+        let of = |name: &str| self.sources.files().find(|(file, _)| *file == name);
+        of(file).map(|f| f.1) == of(other).map(|f| f.1)
+    }
+
     fn programs(&self) -> MutexGuard<'_, BTreeMap<String, Arc<Module>>> {
         self.programs.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -147,7 +147,7 @@ impl<'g> Rasterizer<'g> {
         let mut encoder = self.gpu.encoder();
         for pass in self.ready(file, stage, frame, work, buffers)? {
             pass.record(self, &mut encoder, None);
-            self.note(stage, true, &pass.kernel);
+            self.note(&pass.stage, pass.shared, &pass.kernel);
         }
         let start = Instant::now();
         self.gpu.submit(encoder)?;
@@ -157,6 +157,14 @@ impl<'g> Rasterizer<'g> {
     /// The passes since the last call, in the order in which they were recorded.
     pub fn take_passes(&self) -> Vec<Pass> {
         self.passes.take()
+    }
+
+    /// Records passes, and notes them.
+    pub(crate) fn record(&self, passes: &[Ready], encoder: &mut wgpu::CommandEncoder) {
+        for pass in passes {
+            pass.record(self, encoder, None);
+            self.note(&pass.stage, pass.shared, &pass.kernel);
+        }
     }
 
     fn note(&self, stage: &str, shared: bool, kernel: &Kernel) {
@@ -188,7 +196,7 @@ pub fn per_pixel(
     let pass = rasterizer.ready_per_pixel(file, stage, frame, buffers)?;
     let mut encoder = gpu.encoder();
     pass.record(rasterizer, &mut encoder, None);
-    rasterizer.note(stage, false, &pass.kernel);
+    rasterizer.note(&pass.stage, pass.shared, &pass.kernel);
     let start = Instant::now();
     gpu.submit(encoder)?;
     Ok(start.elapsed())

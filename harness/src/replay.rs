@@ -18,6 +18,7 @@ mod legs;
 mod own_vertices;
 pub mod pictures;
 mod placed;
+pub mod rivals;
 pub mod rows;
 pub mod rsm;
 mod run;

@@ -13,6 +13,10 @@ use crate::timer::Writes;
 /// A pass that is ready.
 pub(crate) struct Ready {
     pub(super) kernel: Arc<Kernel>,
+    /// The stage whose kernel it runs.
+    pub(super) stage: String,
+    /// Whether several invocations may work on one pixel.
+    pub(super) shared: bool,
     group: wgpu::BindGroup,
     frame: Frame,
     /// Invocations, if it is a compute pass.
@@ -58,6 +62,8 @@ impl Rasterizer<'_> {
             all.extend_from_slice(buffers);
             Ok(Ready {
                 kernel: kernel.clone(),
+                stage: stage.into(),
+                shared: true,
                 group: kernel.bind(self.gpu, &all),
                 frame,
                 invocations: frame.items,
@@ -81,6 +87,8 @@ impl Rasterizer<'_> {
         Ok(Ready {
             group: kernel.bind(self.gpu, &all),
             kernel,
+            stage: stage.into(),
+            shared: false,
             frame,
             // A target of 2048 x 2048 pixels is 65,536 workgroups, one more than allowed
             // in a row; bands of the full size are split before that.

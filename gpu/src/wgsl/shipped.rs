@@ -28,6 +28,7 @@ impl Sources {
             "counter",
             "cover",
             "depth",
+            "dual",
             "frame",
             "grid",
             "hbao",
@@ -38,15 +39,19 @@ impl Sources {
             "march",
             "meet",
             "mirror",
+            "near",
+            "near_wide",
             "nearest",
             "opened",
             "overlap",
             "parameters",
+            "peel",
             "place",
             "raster",
             "ray",
             "receiver",
             "relink",
+            "rival",
             "rsm",
             "runs",
             "scan",
@@ -70,5 +75,14 @@ impl Sources {
             files.insert("wide".into(), text);
         }
         Self(files)
+    }
+
+    /// The same where the adapter has atomics of 64-bit integers as well
+    /// (`SHADER_INT64_ATOMIC_MIN_MAX`): depth peeling finds key and triangle in one pass.
+    pub fn with_wide_atomics(mut self) -> Self {
+        if let Some(text) = self.0.get("near_wide").cloned() {
+            self.0.insert("near".into(), text);
+        }
+        self
     }
 }

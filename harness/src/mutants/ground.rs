@@ -69,7 +69,7 @@ impl Ground {
             }
         }
         Ok(Self {
-            plan: Plan::new(&loaded.scene, true),
+            plan: Plan::of(&loaded, true),
             loaded,
             grid,
             rsm,

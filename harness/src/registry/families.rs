@@ -6,6 +6,7 @@ use super::{Chain, Family, Stage, Twin};
 pub const FAMILIES: &[Family] = &[
     Family {
         name: "vertex",
+        files: &[],
         chain: Chain::Frame,
         stages: &[
             vertex("transform", &["transform"]),
@@ -16,6 +17,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "raster",
+        files: &[],
         chain: Chain::Frame,
         stages: &[Stage {
             name: "cover",
@@ -26,6 +28,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "abuffer",
+        files: &["dual", "peel"],
         chain: Chain::Frame,
         stages: &[
             Stage {
@@ -40,11 +43,34 @@ pub const FAMILIES: &[Family] = &[
             },
             per_pixel("sort", &["sort"]),
             per_pixel("resolve", &["resolve"]),
+            Stage {
+                name: "peel",
+                compute: Twin::Entries(&[
+                    "peel_clear",
+                    "peel_nearest",
+                    "peel_first",
+                    "peel",
+                    "peel_behind",
+                ]),
+                fragment: Twin::Entries(&["peel_nearest_fragment", "peel_first_fragment"]),
+            },
+            Stage {
+                name: "dual",
+                compute: Twin::Entries(&[
+                    "dual_clear",
+                    "dual_nearest",
+                    "dual_first",
+                    "dual",
+                    "dual_behind",
+                ]),
+                fragment: Twin::Entries(&["dual_nearest_fragment", "dual_first_fragment"]),
+            },
         ],
         no_corpus: None,
     },
     Family {
         name: "grid",
+        files: &[],
         chain: Chain::Rays,
         stages: &[
             in_cells("count", &["count", "count_chunks"]),
@@ -66,6 +92,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "rsm",
+        files: &[],
         chain: Chain::Indirect,
         stages: &[
             of_pixels("gbuffer", &["gbuffer"]),
@@ -81,6 +108,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "ldm",
+        files: &[],
         chain: Chain::Maps,
         stages: &[
             of_maps(

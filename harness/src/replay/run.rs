@@ -60,7 +60,7 @@ impl<'a> Run<'a> {
             loaded,
             adapters,
             options,
-            plan: Plan::new(&loaded.scene, options.skip),
+            plan: Plan::of(loaded, options.skip),
             spec: None,
             grid: None,
             rsm: None,
