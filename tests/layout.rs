@@ -16,8 +16,9 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 11] = [
-    "abuffer", "ceiling", "dual", "grid", "hbao", "ldm", "nearest", "peel", "raster", "rsm", "vertex",
+const ROOTS: [&str; 15] = [
+    "abuffer", "alpha", "ceiling", "defocus", "density", "dual", "grid", "hbao", "ldm", "nearest", "peel",
+    "raster", "rsm", "vertex", "weighted",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
@@ -184,8 +185,8 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 30,
-        "three functions in five programs of two forms each"
+        seen, 54,
+        "three functions in nine programs of two forms each"
     );
 }
 

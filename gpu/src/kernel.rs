@@ -1,5 +1,6 @@
 //! Pipelines by the name of their entry point, bound by the names of variables.
 
+mod blending;
 mod foreign;
 mod layout;
 mod module;

@@ -135,7 +135,7 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
 
 /// The stages that need no lists, or do more with them than the paper's: the rivals of the
 /// A-buffer. They run beside it, from the same triangles and surfaces.
-pub const RIVALS: [&str; 2] = ["peel", "dual"];
+pub const RIVALS: [&str; 6] = ["peel", "dual", "alpha", "weighted", "density", "defocus"];
 
 /// Whether a result row may be called so.
 pub fn names_row(name: &str) -> bool {

@@ -12,17 +12,25 @@
 //! that overflow can lose that fragment, never a list; depth 1 is
 //! [`crate::vertex::DEPTH_ONE`].
 
+mod alpha;
+mod defocus;
+mod density;
 mod dual;
 mod nearest;
 mod peel;
+mod weighted;
 
 use crate::bound::{Bounded, TINY, gamma};
 use crate::raster::{Fragment, cover_only};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
+pub use alpha::{Target, alpha};
+pub use defocus::{Lens, RADIUS_MAX, defocus};
+pub use density::{attenuation, density};
 pub use dual::{dual, halves, middle};
 pub use nearest::nearest_layers;
 pub use peel::{LAYERS_MAX, peel};
+pub use weighted::{SUM_LEAST, WEIGHT_LEAST, WEIGHT_MOST, weighted};
 
 /// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").
 pub const EOL: u32 = u32::MAX;

@@ -3,8 +3,11 @@
 //!
 //! Yang, Hensley, Grün and Thibieroz (2010), section 2, table 1 and figure 4.
 
+mod following;
+mod once;
 mod peeling;
 mod peels;
+mod targets;
 
 use std::time::Duration;
 
@@ -15,6 +18,8 @@ use crate::error::GpuError;
 use crate::frame::{Band, Frame};
 use crate::pass::Pass;
 use crate::raster::Rasterizer;
+pub use following::{Following, Shading, follow};
+pub use once::{Once, Single, once};
 pub use peeling::{Peeling, Technique, is_wide};
 pub use peels::peel;
 

@@ -1,10 +1,12 @@
 //! The stages that kernels implement: where each one's entry points are, and what an
 //! invocation of it does.
 
+mod rivals;
+
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 29] = [
+pub const STAGES: [Stage; 33] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -73,32 +75,12 @@ pub const STAGES: [Stage; 29] = [
             into picture[i], in front of the opaque key only. Sets progress.unfinished if it \
             needs another dispatch.",
     },
-    Stage {
-        name: "peel",
-        file: "peel",
-        compute: &[
-            "peel_clear",
-            "peel_nearest",
-            "peel_first",
-            "peel",
-            "peel_behind",
-        ],
-        fragment: &["peel_nearest_fragment", "peel_first_fragment"],
-        contract: "First pass: last[i] is 0, 0, picture[i] 0, 0, 0, 1, and near has nothing. Then for each             layer, second and third: the smallest key of every pixel's fragments in front of the opaque key             and from last[i] on, which is a key and a triangle; and the smallest triangle with it. Fourth: that             layer under picture[i], whose alpha is what goes through; last[i] is its key, and its triangle plus             1; peeled counts it. Where nothing is found, nothing changes. At the end, fifth: over what lies behind.",
-    },
-    Stage {
-        name: "dual",
-        file: "dual",
-        compute: &[
-            "dual_clear",
-            "dual_nearest",
-            "dual_first",
-            "dual",
-            "dual_behind",
-        ],
-        fragment: &["dual_nearest_fragment", "dual_first_fragment"],
-        contract: "As peel, from both ends: between[i] is a key and a triangle from which on fragments are             left, and another pair before which they are; at first 0, 0 and the opaque key, 0. Fourth: the             smallest under picture[i], the largest, if it is another fragment, over back[i], which began with             what lies behind. Fifth: picture[i] over back[i].",
-    },
+    rivals::PEEL,
+    rivals::DUAL,
+    rivals::ALPHA,
+    rivals::WEIGHTED,
+    rivals::DENSITY,
+    rivals::DEFOCUS,
     Stage {
         name: "count",
         file: "grid",

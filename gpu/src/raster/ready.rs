@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use triptych_spec::scene::Size;
 use triptych_spec::vertex::{GUARD, guard_origin};
 
 use super::{Path, Rasterizer, Work};
@@ -44,6 +45,18 @@ impl Rasterizer<'_> {
                 self.kernels.fragment(self.gpu, file, place, &entry)?
             }
         };
+        self.ready_kernel(&kernel, stage, frame, work, buffers)
+    }
+
+    /// The passes of a kernel over a band: one for each batch.
+    pub(crate) fn ready_kernel(
+        &self,
+        kernel: &Arc<Kernel>,
+        stage: &str,
+        frame: Frame,
+        work: &Work,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Vec<Ready>, GpuError> {
         let pass = |batch: &super::work::Batch| {
             let frame = Frame {
                 work_first: batch.first,
@@ -97,6 +110,29 @@ impl Rasterizer<'_> {
     }
 }
 
+impl Rasterizer<'_> {
+    /// Records a pass whose colours are blended into other targets than this one's, and notes
+    /// it.
+    pub(crate) fn record_into(
+        &self,
+        ready: &Ready,
+        targets: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        encoder: &mut wgpu::CommandEncoder,
+        writes: Option<Writes<'_>>,
+    ) {
+        let Pipeline::Render(pipeline) = &ready.kernel.pipeline else {
+            unreachable!("colours are those of fragments");
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: targets,
+            timestamp_writes: writes.map(Writes::render),
+            ..Default::default()
+        });
+        ready.draw(pipeline, self.size, &mut pass);
+        self.note(&ready.stage, ready.shared, &ready.kernel);
+    }
+}
+
 impl Ready {
     /// Records the pass, which notes when it begins and ends if that is asked for.
     pub(crate) fn record(
@@ -116,17 +152,26 @@ impl Ready {
                 pass.dispatch_workgroups(self.invocations.div_ceil(WORKGROUP), 1, 1);
             }
             Pipeline::Render(pipeline) => {
-                let size = rasterizer.size;
                 let mut pass = begin_render(encoder, &rasterizer.target, writes);
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &self.group, &[]);
-                let side = GUARD as f32;
-                let origin = [guard_origin(size.width), guard_origin(size.height)];
-                pass.set_viewport(origin[0] as f32, origin[1] as f32, side, side, 0.0, 1.0);
-                pass.set_scissor_rect(0, self.frame.first_row, size.width, self.frame.rows);
-                pass.draw(0..3 * self.frame.work_count, 0..1);
+                self.draw(pipeline, rasterizer.size, &mut pass);
             }
         }
+    }
+
+    /// The triangles of its batch.
+    fn draw(
+        &self,
+        pipeline: &wgpu::RenderPipeline,
+        size: Size,
+        pass: &mut wgpu::RenderPass<'_>,
+    ) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        let side = GUARD as f32;
+        let origin = [guard_origin(size.width), guard_origin(size.height)];
+        pass.set_viewport(origin[0] as f32, origin[1] as f32, side, side, 0.0, 1.0);
+        pass.set_scissor_rect(0, self.frame.first_row, size.width, self.frame.rows);
+        pass.draw(0..3 * self.frame.work_count, 0..1);
     }
 }
 

@@ -20,6 +20,7 @@ impl Sources {
     pub fn shipped(native: bool) -> Self {
         let mut files = shipped!(
             "abuffer",
+            "alpha",
             "asked",
             "bricks",
             "ceiling",
@@ -27,6 +28,8 @@ impl Sources {
             "coarse",
             "counter",
             "cover",
+            "defocus",
+            "density",
             "depth",
             "dual",
             "frame",
@@ -59,6 +62,7 @@ impl Sources {
             "search",
             "slice",
             "sort",
+            "sorted",
             "surface",
             "sweep",
             "texel",
@@ -67,6 +71,7 @@ impl Sources {
             "view",
             "volume",
             "walk",
+            "weighted",
             "wide",
             "wide_native",
         );

@@ -28,7 +28,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "abuffer",
-        files: &["dual", "peel"],
+        files: &["alpha", "defocus", "density", "dual", "peel", "weighted"],
         chain: Chain::Frame,
         stages: &[
             Stage {
@@ -65,6 +65,39 @@ pub const FAMILIES: &[Family] = &[
                 ]),
                 fragment: Twin::Entries(&["dual_nearest_fragment", "dual_first_fragment"]),
             },
+            Stage {
+                name: "alpha",
+                compute: Twin::Entries(&[
+                    "alpha_clear",
+                    "alpha_next",
+                    "alpha",
+                    "alpha_single",
+                    "alpha_half",
+                    "alpha_behind",
+                ]),
+                fragment: Twin::Entries(&["alpha_fragment"]),
+            },
+            Stage {
+                name: "weighted",
+                compute: Twin::Entries(&[
+                    "weighted_clear",
+                    "weighted",
+                    "weighted_behind",
+                    "weighted_blended",
+                ]),
+                fragment: Twin::Entries(&["weighted_fragment"]),
+            },
+            per_pixel("density", &["density_clear", "density"]),
+            per_pixel(
+                "defocus",
+                &[
+                    "defocus_clear",
+                    "defocus_layer",
+                    "defocus",
+                    "defocus_surface",
+                    "defocus_behind",
+                ],
+            ),
         ],
         no_corpus: None,
     },

@@ -97,7 +97,7 @@ impl SpecRun {
             lists,
             sorted,
             image,
-            rivals: Rivals::default(),
+            rivals: Rivals::new(plan.asked),
             times: Times {
                 build,
                 sort,

@@ -12,7 +12,7 @@ use crate::frame::Band;
 use crate::raster::Rasterizer;
 
 /// Layers that are recorded at once.
-const AT_ONCE: u64 = 8;
+const AT_ONCE: u64 = 2;
 
 /// Bytes that their history takes at most, unless a single layer takes more.
 const HISTORY: u64 = 1 << 26;
