@@ -134,7 +134,11 @@ impl Adapter {
             return;
         }
         self.kernels = Kernels::with_foreign(Sources::shipped(false), foreign);
-        let wide = || Kernels::with_foreign(native(&self.gpu), foreign);
+        // A user's kernel knows the baseline's bindings.
+        let wide = || match foreign.iter().any(|f| f.stage.name == "peel") {
+            true => Kernels::with_foreign(Sources::shipped(true), foreign),
+            false => Kernels::with_foreign(native(&self.gpu), foreign),
+        };
         self.native = self.native.is_some().then(wide);
         self.foreign = foreign.to_vec();
     }

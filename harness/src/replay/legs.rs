@@ -117,7 +117,7 @@ impl Run<'_> {
         };
         let spots = self.rows.spots.len();
         let seen = leg.run(&mut self.rows)?;
-        rivals::run(&leg, &mut self.rows)?;
+        rivals::run(&leg, self.options.rivals, &mut self.rows)?;
         if let Some(moved) = moved.as_ref().filter(|_| !from_own && !leg.by_band()) {
             // Whatever the leg was handed before, this run takes nothing but vertices.
             let leg = GpuLeg {

@@ -11,6 +11,7 @@ use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_spec::abuffer::{LAYERS_MAX, Target};
 use triptych_spec::bound::Bounded;
 
+use super::Extent;
 use super::gpu::{GpuLeg, relink};
 use super::rows::Rows;
 use crate::compare::{self, compare};
@@ -19,14 +20,18 @@ use crate::registry::RIVALS;
 use crate::row::Class;
 pub use spec::{Layered, Picture, Rivals};
 
+/// Most work of a technique on a scene that a default run has it do: its passes over the
+/// triangles times triangles and their fragments.
+pub const WORK_MAX: u64 = 1 << 20;
+
 /// Adds rows for every rival.
 ///
 /// # Errors
 /// Whatever the device reports.
-pub fn run(leg: &GpuLeg<'_>, rows: &mut Rows) -> Result<(), GpuError> {
+pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuError> {
     let mut rasterizer = None;
     for stage in RIVALS {
-        if let Some(reason) = reason_not_run(leg, stage) {
+        if let Some(reason) = reason_not_run(leg, extent, stage) {
             let label = leg.label();
             rows.skip(stage, &leg.spec.label, &label, Class::Interval, reason);
             continue;
@@ -51,7 +56,7 @@ fn peels(leg: &GpuLeg<'_>, stage: &str) -> bool {
 }
 
 /// Why a rival does not run on a leg; `None` if it does.
-fn reason_not_run(leg: &GpuLeg<'_>, stage: &str) -> Option<String> {
+fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, stage: &str) -> Option<String> {
     if let Some(planned) = leg.plan.skipped(stage) {
         return Some(planned);
     }
@@ -62,11 +67,18 @@ fn reason_not_run(leg: &GpuLeg<'_>, stage: &str) -> Option<String> {
     if blended && !leg.adapter.gpu.blends_floats() {
         return Some("the adapter blends no 32-bit floats: compute adds them".to_owned());
     }
-    let longest = leg.spec.value.layers();
-    if (peels(leg, stage) || stage == "defocus") && longest > LAYERS_MAX {
+    let spec = &leg.spec.value;
+    let longest = spec.layers();
+    let by_layer = peels(leg, stage) || stage == "defocus";
+    if by_layer && longest > LAYERS_MAX {
         return Some(format!(
             "plan: a pixel has {longest} layers, more than the {LAYERS_MAX} that are gone through one by one"
         ));
+    }
+    let times = if by_layer { u64::from(longest) } else { 1 };
+    let each = spec.primitives.prims.len() + spec.sorted.fragments.len();
+    if extent == Extent::Small && times * each as u64 > WORK_MAX {
+        return Some("of a scene of its size only if asked for: --rivals".to_owned());
     }
     None
 }

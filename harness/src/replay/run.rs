@@ -170,12 +170,13 @@ impl<'a> Run<'a> {
             from,
             vertex,
             world,
+            rivals,
             skip,
             paths,
             pictures,
             ..
         } = self.options;
-        let options = format!("{from:?} {vertex:?} {world:?} {skip} {paths:?} {pictures}");
+        let options = format!("{from:?} {vertex:?} {world:?} {rivals:?} {skip} {paths:?} {pictures}");
         let mut all = vec![
             self.loaded.name.as_str(),
             &self.loaded.stats.sha256,
