@@ -17,8 +17,8 @@ use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
 const ROOTS: [&str; 15] = [
-    "abuffer", "alpha", "ceiling", "defocus", "density", "dual", "grid", "hbao", "ldm", "nearest", "peel",
-    "raster", "rsm", "vertex", "weighted",
+    "abuffer", "alpha", "ceiling", "defocus", "density", "dual", "grid", "hbao", "ldm", "nearest",
+    "peel", "raster", "rsm", "vertex", "weighted",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.

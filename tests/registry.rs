@@ -169,7 +169,11 @@ fn entry_points_are_in_the_families_files() {
         let text = read(&path);
         let has = text.lines().any(|l| kinds.iter().any(|k| l.starts_with(k)));
         let measured = MEASURED.iter().any(|m| m.file == stem);
-        let may = stem == PLACE || measured || FAMILIES.iter().any(|f| f.name == stem || f.files.contains(&stem.as_str()));
+        let may = stem == PLACE
+            || measured
+            || FAMILIES
+                .iter()
+                .any(|f| f.name == stem || f.files.contains(&stem.as_str()));
         assert_eq!(
             has,
             may,

@@ -16,6 +16,7 @@ use crate::error::GpuError;
 use crate::frame::{Band, Frame};
 use crate::kernel::{Kernel, Kernels, TARGET_FORMAT};
 use crate::pass::Pass;
+use crate::timer::Writes;
 pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub(crate) use ready::Ready;
@@ -162,9 +163,19 @@ impl<'g> Rasterizer<'g> {
     /// Records passes, and notes them.
     pub(crate) fn record(&self, passes: &[Ready], encoder: &mut wgpu::CommandEncoder) {
         for pass in passes {
-            pass.record(self, encoder, None);
-            self.note(&pass.stage, pass.shared, &pass.kernel);
+            self.record_pass(pass, encoder, None);
         }
+    }
+
+    /// Records a pass, and notes it.
+    pub(crate) fn record_pass(
+        &self,
+        pass: &Ready,
+        encoder: &mut wgpu::CommandEncoder,
+        writes: Option<Writes<'_>>,
+    ) {
+        pass.record(self, encoder, writes);
+        self.note(&pass.stage, pass.shared, &pass.kernel);
     }
 
     fn note(&self, stage: &str, shared: bool, kernel: &Kernel) {

@@ -5,8 +5,8 @@ mod rivals;
 use triptych_spec::scene::Scene;
 
 use crate::registry::{Chain, stages_of};
-pub use rivals::Asked;
 use crate::scene::Loaded;
+pub use rivals::Asked;
 
 /// One pass: whether it runs, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,16 +39,17 @@ pub struct Plan {
 impl Plan {
     /// The plan of a scene that is loaded, with the rivals that it asks for.
     pub fn of(loaded: &Loaded, skip: bool) -> Self {
-        Self::with(&loaded.scene, skip, Asked::by(loaded))
+        Self::asking(&loaded.scene, skip, Asked::by(loaded))
     }
 
     /// The plan of a scene, without rivals. With `skip` false everything runs and every
     /// transparent fragment is stored.
     pub fn new(scene: &Scene, skip: bool) -> Self {
-        Self::with(scene, skip, Asked::default())
+        Self::asking(scene, skip, Asked::default())
     }
 
-    fn with(scene: &Scene, skip: bool, asked: Asked) -> Self {
+    /// The same with these rivals.
+    pub fn asking(scene: &Scene, skip: bool, asked: Asked) -> Self {
         let opaque = scene.triangles.iter().filter(|t| t.is_opaque()).count();
         let transparent = scene.triangles.len() - opaque;
         let mut passes = Vec::new();

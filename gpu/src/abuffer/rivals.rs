@@ -39,6 +39,8 @@ pub struct Rival {
     pub image: Vec<[f32; 3]>,
     /// The fragments that were peeled, nearest first; empty lists where none are.
     pub sorted: Sorted,
+    /// Fragments that the device counted as it peeled them.
+    pub counted: u64,
     /// Time on the device, without transfers.
     pub time: Duration,
     /// What was recorded.

@@ -159,12 +159,7 @@ impl Ready {
     }
 
     /// The triangles of its batch.
-    fn draw(
-        &self,
-        pipeline: &wgpu::RenderPipeline,
-        size: Size,
-        pass: &mut wgpu::RenderPass<'_>,
-    ) {
+    fn draw(&self, pipeline: &wgpu::RenderPipeline, size: Size, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         let side = GUARD as f32;

@@ -1,7 +1,8 @@
 //! Stages `peel` and `dual`: which fragments were peeled, layer by layer.
 //!
-//! The list of a pixel that is not the spec's has a fragment twice: `duplicate`. Else it has
-//! another triangle, or lacks one: `coverage`. Else a triangle has another key: `depth-key`.
+//! If more fragments were counted than lists have, some were peeled again, which lists cannot
+//! show, as they are read from what was peeled last: `duplicate`. Else a list that is not the
+//! spec's has a fragment twice: `duplicate`. Else it has another triangle, or lacks one: `coverage`. Else a triangle has another key: `depth-key`.
 //! Else the same fragments come in another order: `tie-order` if their keys do not, else
 //! `sort-order`.
 
@@ -16,9 +17,21 @@ use super::order::words;
 use crate::cause::Cause;
 use crate::row::Class;
 
-/// Compares every layer of every pixel, bit for bit.
-pub fn compare(spec: &Sorted, other: &Sorted, width: u32) -> Judgement {
+/// Compares every layer of every pixel, bit for bit, and how many fragments were `counted`.
+pub fn compare(spec: &Sorted, other: &Sorted, counted: u64, width: u32) -> Judgement {
     let mut judgement = Judgement::new(Class::Exact, "fragments");
+    let listed = other.fragments.len() as u64;
+    if counted != listed {
+        judgement.compared = spec.fragments.len() as u64;
+        let cause = match counted > listed {
+            true => Cause::Duplicate,
+            false => Cause::Overflow,
+        };
+        judgement.differs(cause, None, || {
+            format!("{counted} fragments were counted, {listed} different ones were peeled")
+        });
+        return judgement;
+    }
     if spec.offsets.len() != other.offsets.len() {
         let pixels = [other, spec].map(|of| of.offsets.len() - 1);
         judgement.differs(Cause::ReferenceMissing, None, || {
@@ -87,7 +100,8 @@ mod tests {
     fn every_difference_has_its_cause() {
         let must = [(5, 1), (5, 2), (9, 0)];
         let judged = |seen: &[(u32, u32)]| {
-            let judgement = compare(&sorted(&must), &sorted(seen), 1);
+            let counted = seen.len() as u64;
+            let judgement = compare(&sorted(&must), &sorted(seen), counted, 1);
             assert_eq!(judgement.compared, 3, "all that must be there");
             judgement.causes.into_keys().collect::<Vec<_>>()
         };
@@ -102,17 +116,22 @@ mod tests {
         ] {
             assert_eq!(judged(seen), [cause], "{seen:?}");
         }
+        for (counted, cause) in [(4, Cause::Duplicate), (2, Cause::Overflow)] {
+            let judgement = compare(&sorted(&must), &sorted(&must), counted, 1);
+            let causes: Vec<Cause> = judgement.causes.into_keys().collect();
+            assert_eq!(causes, [cause], "{counted} counted of three");
+        }
     }
 
     #[test]
     fn nothing_to_compare_says_so() {
-        let judgement = compare(&sorted(&[]), &sorted(&[]), 1);
+        let judgement = compare(&sorted(&[]), &sorted(&[]), 0, 1);
         assert_eq!((judgement.unit, judgement.compared), ("empty lists", 1));
         let short = Sorted {
             offsets: vec![0],
             fragments: Vec::new(),
         };
-        let judgement = compare(&sorted(&[]), &short, 1);
+        let judgement = compare(&sorted(&[]), &short, 0, 1);
         assert_eq!(judgement.differ(), 1, "another number of pixels");
     }
 }

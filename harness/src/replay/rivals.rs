@@ -97,10 +97,8 @@ impl GpuLeg<'_> {
             opaque: &spec.opaque,
             background: self.scene.background,
         };
-        let peeled =
-            |technique| peel(rasterizer, technique, given, LAYERS_MAX, is_opaque);
-        let followed =
-            |shading| follow(rasterizer, shading, given, &relink(spec), spec.layers());
+        let peeled = |technique| peel(rasterizer, technique, given, LAYERS_MAX, is_opaque);
+        let followed = |shading| follow(rasterizer, shading, given, &relink(spec), spec.layers());
         match stage {
             "peel" => {
                 let must = rivals.peel(self.scene, spec);
@@ -152,21 +150,14 @@ impl GpuLeg<'_> {
     }
 
     /// Every layer to the bit, and the picture inside the spec's bound.
-    fn judge_layers(
-        &self,
-        stage: &str,
-        must: &Layered,
-        seen: Rival,
-        words: &str,
-        rows: &mut Rows,
-    ) {
+    fn judge_layers(&self, stage: &str, must: &Layered, seen: Rival, words: &str, rows: &mut Rows) {
         let width = self.scene.size.width;
         let note = format!("{} layers{words}", seen.layers);
         let time = seen.time;
         let seen = Observed::<Gpu, Rival>::new(self.label(), seen).taking(time);
         let must = self.spec.derive(must).taking(must.picture.time);
         let mut layers = compare(&must, &seen, |a, b| {
-            let mut judgement = compare::peeled::compare(&a.sorted, &b.sorted, width);
+            let mut judgement = compare::peeled::compare(&a.sorted, &b.sorted, b.counted, width);
             compare::passes::judge(&b.passes, &mut judgement);
             judgement
         });

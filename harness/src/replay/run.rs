@@ -176,7 +176,8 @@ impl<'a> Run<'a> {
             pictures,
             ..
         } = self.options;
-        let options = format!("{from:?} {vertex:?} {world:?} {rivals:?} {skip} {paths:?} {pictures}");
+        let options =
+            format!("{from:?} {vertex:?} {world:?} {rivals:?} {skip} {paths:?} {pictures}");
         let mut all = vec![
             self.loaded.name.as_str(),
             &self.loaded.stats.sha256,

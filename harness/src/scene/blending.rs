@@ -19,7 +19,10 @@ impl TryFrom<f64> for Density {
     type Error = String;
     fn try_from(v: f64) -> Result<Self, String> {
         match (0.0..=DENSITY_MAX).contains(&v) {
-            #[expect(clippy::cast_possible_truncation, reason = "rounded once, for all legs")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "rounded once, for all legs"
+            )]
             true => Ok(Self(v as f32)),
             false => Err(format!("{v} is outside 0 to {DENSITY_MAX}")),
         }
@@ -97,12 +100,30 @@ mod tests {
     #[test]
     fn mistakes_are_named() {
         for (text, words) in [
-            ("focus = 1.5\naperture = 1\nradius = 1", "focus = 1.5 is outside 0 to 1"),
-            ("focus = nan\naperture = 1\nradius = 1", "focus = NaN is outside 0 to 1"),
-            ("focus = 0\naperture = 65536\nradius = 1", "aperture = 65536 is outside 0 to 65535"),
-            ("focus = 0\naperture = -1\nradius = 1", "aperture = -1 is outside 0 to 65535"),
-            ("focus = 0\naperture = 1\nradius = 0", "radius = 0 is outside 1 to 8"),
-            ("focus = 0\naperture = 1\nradius = 9", "radius = 9 is outside 1 to 8"),
+            (
+                "focus = 1.5\naperture = 1\nradius = 1",
+                "focus = 1.5 is outside 0 to 1",
+            ),
+            (
+                "focus = nan\naperture = 1\nradius = 1",
+                "focus = NaN is outside 0 to 1",
+            ),
+            (
+                "focus = 0\naperture = 65536\nradius = 1",
+                "aperture = 65536 is outside 0 to 65535",
+            ),
+            (
+                "focus = 0\naperture = -1\nradius = 1",
+                "aperture = -1 is outside 0 to 65535",
+            ),
+            (
+                "focus = 0\naperture = 1\nradius = 0",
+                "radius = 0 is outside 1 to 8",
+            ),
+            (
+                "focus = 0\naperture = 1\nradius = 9",
+                "radius = 9 is outside 1 to 8",
+            ),
         ] {
             assert_eq!(defocus(text), Err(words.to_owned()), "{text}");
         }

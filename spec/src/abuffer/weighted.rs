@@ -105,7 +105,11 @@ fn picture(layers: &[([f32; 4], u32)], behind: [f32; 3]) -> [Bounded; 3] {
 
 /// The sum of terms, whatever their order was.
 fn sum(mut terms: Vec<Bounded>) -> Bounded {
-    terms.sort_by(|x, y| x.value.total_cmp(&y.value).then(x.bound.total_cmp(&y.bound)));
+    terms.sort_by(|x, y| {
+        x.value
+            .total_cmp(&y.value)
+            .then(x.bound.total_cmp(&y.bound))
+    });
     let mut sum = Sum::default();
     terms.into_iter().for_each(|term| sum.add(term));
     sum.finish()

@@ -9,6 +9,7 @@ use crate::abuffer::STEPS;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::{Rasterizer, Ready};
+use crate::timer::Timer;
 
 /// What is made of the layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,6 +133,21 @@ impl<'r, 'g> Following<'r, 'g> {
         }
         let pixels = Band::whole(rasterizer.size).pixels(rasterizer.size);
         image(gpu, self.buffer("picture"), pixels)
+    }
+
+    /// Seconds of a run of so many layers, of the only span of a timer.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn time(&self, timer: &Timer, layers: u32) -> Result<f64, GpuError> {
+        let count = self.passes(layers).count();
+        let spans = timer.time(self.rasterizer.gpu, 0..1, |span, encoder, queries| {
+            for (at, pass) in self.passes(layers).enumerate() {
+                let writes = queries.and_then(|q| q.writes(span, at, count));
+                pass.record(self.rasterizer, encoder, writes);
+            }
+        })?;
+        Ok(spans[0])
     }
 
     fn buffer(&self, name: &str) -> &wgpu::Buffer {

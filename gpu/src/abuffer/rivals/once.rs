@@ -7,6 +7,7 @@ use super::{Given, Rival, Surfaces, bands, frame, image};
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::{Path, Rasterizer, Ready};
+use crate::timer::{Timer, Writes};
 
 /// What goes through the triangles once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,21 +99,52 @@ impl<'r, 'g> Once<'r, 'g> {
         })
     }
 
-    /// Records all of it; `writes` notes when each of the passes begins and ends.
-    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.rasterizer.record(&self.before, encoder);
-        match &self.targets {
-            None => self.rasterizer.record(&self.drawn, encoder),
-            Some(targets) => {
-                targets.clear(encoder);
-                for pass in &self.drawn {
-                    self.rasterizer
-                        .record_into(pass, &targets.attachments(), encoder, None);
+    /// Records all of it; `writes` says what each pass notes of its beginning and end, by its
+    /// number and how many there are.
+    pub(crate) fn record<'w>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        writes: impl Fn(usize, usize) -> Option<Writes<'w>>,
+    ) {
+        let first = self.before.len() + usize::from(self.targets.is_some());
+        let count = first + self.drawn.len() + self.after.len();
+        let mut numbers = 0..count;
+        let mut next = || writes(numbers.next().unwrap_or(count), count);
+        for pass in &self.before {
+            self.rasterizer.record_pass(pass, encoder, next());
+        }
+        if let Some(targets) = &self.targets {
+            targets.clear(encoder, next());
+        }
+        for pass in &self.drawn {
+            match &self.targets {
+                None => self.rasterizer.record_pass(pass, encoder, next()),
+                Some(targets) => {
+                    let into = targets.attachments();
+                    self.rasterizer.record_into(pass, &into, encoder, next());
                 }
-                targets.copy(encoder);
             }
         }
-        self.rasterizer.record(&self.after, encoder);
+        if let Some(targets) = &self.targets {
+            targets.copy(encoder);
+        }
+        for pass in &self.after {
+            self.rasterizer.record_pass(pass, encoder, next());
+        }
+    }
+
+    /// Seconds of a run, of the only span of a timer.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn time(&self, timer: &Timer) -> Result<f64, GpuError> {
+        let gpu = self.rasterizer.gpu;
+        let spans = timer.time(gpu, 0..1, |span, encoder, queries| {
+            self.record(encoder, |at, of| {
+                queries.and_then(|q| q.writes(span, at, of))
+            });
+        })?;
+        Ok(spans[0])
     }
 
     /// Runs it once, and gives the picture.
@@ -121,7 +153,7 @@ impl<'r, 'g> Once<'r, 'g> {
     /// Whatever the device reports.
     pub fn run(&self) -> Result<Vec<[f32; 3]>, GpuError> {
         let mut encoder = self.rasterizer.gpu.encoder();
-        self.record(&mut encoder);
+        self.record(&mut encoder, |_, _| None);
         self.rasterizer.gpu.submit(encoder)?;
         image(self.rasterizer.gpu, &self.picture, self.pixels)
     }

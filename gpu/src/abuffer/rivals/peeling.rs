@@ -5,6 +5,7 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::{Path, Rasterizer, Ready};
+use crate::timer::Timer;
 
 /// Which layers come next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +159,21 @@ impl<'r, 'g> Peeling<'r, 'g> {
         }
         gpu.submit(encoder)?;
         super::image(gpu, self.buffer("picture"), self.pixels)
+    }
+
+    /// Seconds of a run of so many layers, of the only span of a timer.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn time(&self, timer: &Timer, layers: u32) -> Result<f64, GpuError> {
+        let count = self.passes(layers).count();
+        let spans = timer.time(self.rasterizer.gpu, 0..1, |span, encoder, queries| {
+            for (at, pass) in self.passes(layers).enumerate() {
+                let writes = queries.and_then(|q| q.writes(span, at, count));
+                pass.record(self.rasterizer, encoder, writes);
+            }
+        })?;
+        Ok(spans[0])
     }
 
     /// Fragments that the last run peeled.

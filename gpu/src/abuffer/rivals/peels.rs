@@ -101,7 +101,8 @@ impl Run<'_, '_> {
             let start = Instant::now();
             gpu.submit(encoder)?;
             all.time += start.elapsed();
-            let read: Vec<u32> = gpu.read(&history, usize::try_from(now).expect("a few") * count)?;
+            let read: Vec<u32> =
+                gpu.read(&history, usize::try_from(now).expect("a few") * count)?;
             for state in read.chunks(count) {
                 ended = !found.add(self.technique, state.to_vec());
                 done += u32::from(!ended);
@@ -112,9 +113,13 @@ impl Run<'_, '_> {
         gpu.submit(encoder)?;
         let picture = image(gpu, self.peeling.buffer("picture"), pixels)?;
         all.image.extend(picture);
+        all.counted += u64::from(self.peeling.peeled()?);
         all.layers = all.layers.max(done);
         all.bytes = all.bytes.max(self.peeling.bytes());
-        found.into_lists(self.band.first * self.rasterizer.size.width, &mut all.sorted);
+        found.into_lists(
+            self.band.first * self.rasterizer.size.width,
+            &mut all.sorted,
+        );
         Ok(())
     }
 }

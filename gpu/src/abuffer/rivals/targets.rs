@@ -3,6 +3,7 @@
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::Rasterizer;
+use crate::timer::Writes;
 
 /// Bytes that a row of a texture is a multiple of in a buffer (WebGPU).
 const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
@@ -33,13 +34,12 @@ impl Blend {
     pub(super) fn states(self) -> Vec<wgpu::ColorTargetState> {
         use wgpu::BlendFactor::{One, OneMinusSrc, OneMinusSrcAlpha, SrcAlpha, Zero};
         let state = |format, color, alpha| {
-            let component = |[src_factor, dst_factor]: [wgpu::BlendFactor; 2]| {
-                wgpu::BlendComponent {
+            let component =
+                |[src_factor, dst_factor]: [wgpu::BlendFactor; 2]| wgpu::BlendComponent {
                     src_factor,
                     dst_factor,
                     operation: wgpu::BlendOperation::Add,
-                }
-            };
+                };
             wgpu::ColorTargetState {
                 format,
                 blend: Some(wgpu::BlendState {
@@ -49,7 +49,13 @@ impl Blend {
                 write_mask: wgpu::ColorWrites::ALL,
             }
         };
-        let over = |format| state(format, [SrcAlpha, OneMinusSrcAlpha], [Zero, OneMinusSrcAlpha]);
+        let over = |format| {
+            state(
+                format,
+                [SrcAlpha, OneMinusSrcAlpha],
+                [Zero, OneMinusSrcAlpha],
+            )
+        };
         match self {
             Self::Over { half: false } => vec![over(wgpu::TextureFormat::Rgba32Float)],
             Self::Over { half: true } => vec![over(wgpu::TextureFormat::Rgba16Float)],
@@ -106,7 +112,8 @@ impl Targets {
             };
             let taken = u64::from(*bytes) * size.pixels() as u64;
             let texture = gpu.make(name, taken, |device| device.create_texture(&descriptor))?;
-            all.views.push(texture.create_view(&wgpu::TextureViewDescriptor::default()));
+            all.views
+                .push(texture.create_view(&wgpu::TextureViewDescriptor::default()));
             all.textures.push(texture);
             let rows = u64::from(row(size.width, *bytes)) * u64::from(band.rows);
             all.buffers.push(gpu.storage(name, rows)?);
@@ -131,11 +138,13 @@ impl Targets {
     /// To be drawn into, over what is there.
     pub(super) fn attachments(&self) -> Vec<Option<wgpu::RenderPassColorAttachment<'_>>> {
         let views = self.views.iter();
-        views.map(|view| attachment(view, wgpu::LoadOp::Load)).collect()
+        views
+            .map(|view| attachment(view, wgpu::LoadOp::Load))
+            .collect()
     }
 
     /// A pass of its own, as the first batch may not be there.
-    pub(super) fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(super) fn clear(&self, encoder: &mut wgpu::CommandEncoder, writes: Option<Writes<'_>>) {
         let views = self.views.iter().zip(self.blend.kinds());
         let cleared = |(view, (_, _, colour)): (_, &(_, _, wgpu::Color))| {
             attachment(view, wgpu::LoadOp::Clear(*colour))
@@ -143,6 +152,7 @@ impl Targets {
         let attachments: Vec<_> = views.map(cleared).collect();
         drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &attachments,
+            timestamp_writes: writes.map(Writes::render),
             ..Default::default()
         }));
     }

@@ -91,9 +91,7 @@ impl Rivals {
             Target::Single => &self.single,
             Target::Half => &self.half,
         };
-        of.get_or_init(|| {
-            picture(|| abuffer::alpha(scene, &spec.primitives, &spec.opaque, target))
-        })
+        of.get_or_init(|| picture(|| abuffer::alpha(scene, &spec.primitives, &spec.opaque, target)))
     }
 
     /// Stage `weighted`.
