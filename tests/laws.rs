@@ -12,6 +12,7 @@
 //! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
 //! | `abuffer` | lists, capacity, conservation, permutation, order of insertion |
 //! | `abuffer::resolve` | closed forms and bounds of blending; powers of two |
+//! | `abuffer::rivals` | peels find the nearest layers; orders that do not matter; closed forms and bounds of what else is made of layers |
 //! | `tiles` | bins hold what is covered; lists and pictures are those of `abuffer`; nothing between entries |
 //! | `tiles::adapters` | however few triangles a dispatch draws |
 //! | `grid::rays` | brute force; reversal, parts, translation, splits, resolution; exact arithmetic |
@@ -38,7 +39,7 @@
 //! | `ldm::frames` | frames together are their sum, and fit; the more, the nearer to what is exact |
 //! | `ldm::symmetry` | everything turned together; directions and their opposites |
 //! | `ldm::loose` | whatever WGSL allows stays inside the bounds |
-//! | `gpu` | random triangles give the same fragments and lists on every adapter and path |
+//! | `gpu` | random triangles give the same fragments, lists and rivals on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:
 //! `PROPTEST_RNG_SEED=7 PROPTEST_CASES=100000 cargo test --test laws`. A failure is

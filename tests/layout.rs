@@ -16,8 +16,9 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 10] = [
-    "abuffer", "ceiling", "grid", "hbao", "ldm", "nearest", "raster", "rsm", "tiles", "vertex",
+const ROOTS: [&str; 16] = [
+    "abuffer", "alpha", "ceiling", "defocus", "density", "dual", "grid", "hbao", "ldm", "nearest",
+    "peel", "raster", "rsm", "tiles", "vertex", "weighted",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
@@ -184,8 +185,8 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 18,
-        "three functions in three programs of two forms each"
+        seen, 54,
+        "three functions in nine programs of two forms each"
     );
 }
 

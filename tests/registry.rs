@@ -82,11 +82,17 @@ fn stages_are_functions_of_the_spec() {
 fn entry_points_are_those_of_the_wgsl() {
     let families = FAMILIES.iter().filter(|family| family.has_twins());
     for (family, native) in families.flat_map(|f| [(f, false), (f, true)]) {
-        let linked = Sources::shipped(native).link(family.name);
-        let program = linked.and_then(triptych_gpu::wgsl::Linked::parse);
-        let module = program.unwrap_or_else(|e| panic!("{e}")).module;
+        let files = family.files.iter().chain([&family.name]);
+        let modules: Vec<_> = files
+            .map(|file| {
+                let linked = Sources::shipped(native).link(file);
+                let program = linked.and_then(triptych_gpu::wgsl::Linked::parse);
+                program.unwrap_or_else(|e| panic!("{e}")).module
+            })
+            .collect();
+        let points = || modules.iter().flat_map(|module| &module.entry_points);
         let entries = |stage: ShaderStage| -> BTreeSet<&str> {
-            let all = module.entry_points.iter().filter(|e| e.stage == stage);
+            let all = points().filter(|e| e.stage == stage);
             all.map(|e| e.name.as_str()).collect()
         };
         let of = |twin: fn(&triptych_harness::registry::Stage) -> &'static [&'static str]| {
@@ -113,10 +119,7 @@ fn entry_points_are_those_of_the_wgsl() {
             ShaderStage::Vertex,
         ];
         assert!(
-            module
-                .entry_points
-                .iter()
-                .all(|e| stages.contains(&e.stage)),
+            points().all(|e| stages.contains(&e.stage)),
             "{name}: an entry point of another kind"
         );
     }
@@ -166,7 +169,11 @@ fn entry_points_are_in_the_families_files() {
         let text = read(&path);
         let has = text.lines().any(|l| kinds.iter().any(|k| l.starts_with(k)));
         let measured = MEASURED.iter().any(|m| m.file == stem);
-        let may = stem == PLACE || measured || FAMILIES.iter().any(|f| f.name == stem);
+        let may = stem == PLACE
+            || measured
+            || FAMILIES
+                .iter()
+                .any(|f| f.name == stem || f.files.contains(&stem.as_str()));
         assert_eq!(
             has,
             may,

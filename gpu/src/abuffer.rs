@@ -2,6 +2,7 @@
 
 mod attempt;
 mod buffers;
+pub mod rivals;
 mod stages;
 mod timed;
 

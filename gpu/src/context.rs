@@ -7,9 +7,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::error::GpuError;
 
 /// What a device has beyond WebGPU's defaults, if its adapter does: 64-bit integers for
-/// path `native`, timestamps for `triptych bench`.
-const FEATURES: wgpu::Features =
-    wgpu::Features::SHADER_INT64.union(wgpu::Features::TIMESTAMP_QUERY);
+/// path `native`, with atomics of these and blending of 32-bit floats for rivals of lists,
+/// timestamps for `triptych bench`.
+const FEATURES: wgpu::Features = wgpu::Features::SHADER_INT64
+    .union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX)
+    .union(wgpu::Features::FLOAT32_BLENDABLE)
+    .union(wgpu::Features::TIMESTAMP_QUERY);
 
 /// Which adapters a run is about.
 pub fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
@@ -104,6 +107,19 @@ impl Gpu {
         self.device
             .features()
             .contains(wgpu::Features::SHADER_INT64)
+    }
+
+    /// Whether the adapter has atomic minima of 64-bit integers.
+    pub fn has_int64_atomics(&self) -> bool {
+        let needed = wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
+        self.has_int64() && self.device.features().contains(needed)
+    }
+
+    /// Whether the adapter blends 32-bit floats.
+    pub fn blends_floats(&self) -> bool {
+        self.device
+            .features()
+            .contains(wgpu::Features::FLOAT32_BLENDABLE)
     }
 
     /// Whether the adapter tells when a pass began and ended.

@@ -1,5 +1,6 @@
 //! Pipelines by the name of their entry point, bound by the names of variables.
 
+mod blending;
 mod foreign;
 mod layout;
 mod module;
@@ -132,6 +133,12 @@ impl Kernels {
     /// What the host does wrong on purpose.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
+    }
+
+    /// Whether two files are alike, as where one stands in for the other.
+    pub fn alike(&self, file: &str, other: &str) -> bool {
+        let of = |name: &str| self.sources.files().find(|(file, _)| *file == name);
+        of(file).map(|f| f.1) == of(other).map(|f| f.1)
     }
 
     fn programs(&self) -> MutexGuard<'_, BTreeMap<String, Arc<Module>>> {

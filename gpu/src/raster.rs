@@ -16,6 +16,7 @@ use crate::error::GpuError;
 use crate::frame::{Band, Frame};
 use crate::kernel::{Kernel, Kernels, TARGET_FORMAT};
 use crate::pass::Pass;
+use crate::timer::Writes;
 pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub(crate) use ready::Ready;
@@ -149,7 +150,7 @@ impl<'g> Rasterizer<'g> {
         let mut encoder = self.gpu.encoder();
         for pass in self.ready(file, stage, frame, work, buffers)? {
             pass.record(self, &mut encoder, None);
-            self.note(stage, true, &pass.kernel);
+            self.note(&pass.stage, pass.shared, &pass.kernel);
         }
         let start = Instant::now();
         self.gpu.submit(encoder)?;
@@ -169,6 +170,24 @@ impl<'g> Rasterizer<'g> {
     /// The passes since the last call, in the order in which they were recorded.
     pub fn take_passes(&self) -> Vec<Pass> {
         self.passes.take()
+    }
+
+    /// Records passes, and notes them.
+    pub(crate) fn record(&self, passes: &[Ready], encoder: &mut wgpu::CommandEncoder) {
+        for pass in passes {
+            self.record_pass(pass, encoder, None);
+        }
+    }
+
+    /// Records a pass, and notes it.
+    pub(crate) fn record_pass(
+        &self,
+        pass: &Ready,
+        encoder: &mut wgpu::CommandEncoder,
+        writes: Option<Writes<'_>>,
+    ) {
+        pass.record(self, encoder, writes);
+        self.note(&pass.stage, pass.shared, &pass.kernel);
     }
 
     fn note(&self, stage: &str, shared: bool, kernel: &Kernel) {
@@ -200,7 +219,7 @@ pub fn per_pixel(
     let pass = rasterizer.ready_per_pixel(file, stage, frame, buffers)?;
     let mut encoder = gpu.encoder();
     pass.record(rasterizer, &mut encoder, None);
-    rasterizer.note(stage, false, &pass.kernel);
+    rasterizer.note(&pass.stage, pass.shared, &pass.kernel);
     let start = Instant::now();
     gpu.submit(encoder)?;
     Ok(start.elapsed())

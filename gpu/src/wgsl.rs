@@ -150,7 +150,9 @@ impl Linked {
             let line = e.location(&self.text).map_or(1, |l| l.line_number);
             self.error(line, e.message())
         })?;
-        let capabilities = Capabilities::default() | Capabilities::SHADER_INT64;
+        let capabilities = Capabilities::default()
+            | Capabilities::SHADER_INT64
+            | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
         let info = Validator::new(ValidationFlags::all(), capabilities)
             .validate(&module)
             .map_err(|e| {

@@ -12,6 +12,7 @@ pub mod moved;
 pub mod opaque;
 pub mod order;
 pub mod passes;
+pub mod peeled;
 pub mod region;
 pub mod rsm;
 pub mod tiles;

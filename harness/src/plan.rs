@@ -1,9 +1,12 @@
 //! What a scene needs, decided before anything runs.
 
+mod rivals;
+
 use triptych_spec::scene::Scene;
 
 use crate::registry::{Chain, stages_of};
 use crate::scene::Loaded;
+pub use rivals::Asked;
 
 /// One pass: whether it runs, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,7 +20,7 @@ pub struct Pass {
 }
 
 /// Which passes a scene needs.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Every pass of the family, in order.
     pub passes: Vec<Pass>,
@@ -29,12 +32,24 @@ pub struct Plan {
     pub depth_test: bool,
     /// Whether every fragment is streamed out and compared.
     pub cover: bool,
+    /// Which rivals of the lists are asked for.
+    pub asked: Asked,
 }
 
 impl Plan {
-    /// The plan of a scene. With `skip` false everything runs and every transparent
-    /// fragment is stored.
+    /// The plan of a scene that is loaded, with the rivals that it asks for.
+    pub fn of(loaded: &Loaded, skip: bool) -> Self {
+        Self::asking(&loaded.scene, skip, Asked::by(loaded))
+    }
+
+    /// The plan of a scene, without rivals. With `skip` false everything runs and every
+    /// transparent fragment is stored.
     pub fn new(scene: &Scene, skip: bool) -> Self {
+        Self::asking(scene, skip, Asked::default())
+    }
+
+    /// The same with these rivals.
+    pub fn asking(scene: &Scene, skip: bool, asked: Asked) -> Self {
         let opaque = scene.triangles.iter().filter(|t| t.is_opaque()).count();
         let transparent = scene.triangles.len() - opaque;
         let mut passes = Vec::new();
@@ -75,10 +90,8 @@ impl Plan {
             lists = decide(name, transparent > 0, why, "no transparent triangles");
         }
         decide("resolve", true, "the picture".into(), "");
-        for name in ["bin", "jagged", "shade"] {
-            let why = format!("{transparent} transparent triangles");
-            decide(name, transparent > 0, why, "no transparent triangles");
-        }
+        passes.extend(asked.passes(transparent));
+        passes.extend(by_tiles(transparent, skip));
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
             name: "depth test",
@@ -95,6 +108,7 @@ impl Plan {
             lists,
             depth_test,
             cover,
+            asked,
         }
     }
 
@@ -104,10 +118,27 @@ impl Plan {
     }
 }
 
+/// The passes of lists by tiles.
+fn by_tiles(transparent: usize, skip: bool) -> impl Iterator<Item = Pass> {
+    let none = "no transparent triangles";
+    let reason = move || match (transparent, skip) {
+        (0, true) => none.to_owned(),
+        (0, false) => format!("not needed ({none}), but nothing is skipped"),
+        _ => format!("{transparent} transparent triangles"),
+    };
+    ["bin", "jagged", "shade"]
+        .into_iter()
+        .map(move |name| Pass {
+            name,
+            runs: transparent > 0 || !skip,
+            reason: reason(),
+        })
+}
+
 /// What a scene needs.
 pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
     match loaded.chain() {
-        Chain::Frame => Plan::new(&loaded.scene, skip).passes,
+        Chain::Frame => Plan::of(loaded, skip).passes,
         Chain::Rays => GridPlan::new(loaded, skip).passes,
         Chain::Indirect => RsmPlan::new(loaded, skip).passes,
         Chain::Maps => LdmPlan::new(loaded, skip).passes,

@@ -14,6 +14,8 @@ pub use families::FAMILIES;
 pub struct Family {
     /// The stem.
     pub name: &'static str,
+    /// WGSL files beside its own that have entry points of its stages.
+    pub files: &'static [&'static str],
     /// Which scenes it is for.
     pub chain: Chain,
     /// Its stages, in the order in which they run.
@@ -50,7 +52,7 @@ pub struct Stage {
 /// A stage's counterpart on a path of the GPU leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twin {
-    /// Entry points of the family's WGSL file, one for each pass.
+    /// Entry points of the family's WGSL files, one for each pass.
     Entries(&'static [&'static str]),
     /// None, and why.
     None(&'static str),
@@ -130,6 +132,10 @@ pub fn stages_of(chain: Chain) -> impl Iterator<Item = &'static Stage> {
 pub fn stages() -> impl Iterator<Item = &'static Stage> {
     FAMILIES.iter().flat_map(|family| family.stages)
 }
+
+/// The stages that need no lists, or do more with them than the paper's: the rivals of the
+/// A-buffer. They run beside it, from the same triangles and surfaces.
+pub const RIVALS: [&str; 6] = ["peel", "dual", "alpha", "weighted", "density", "defocus"];
 
 /// Whether a result row may be called so.
 pub fn names_row(name: &str) -> bool {

@@ -18,6 +18,7 @@ mod legs;
 mod own_vertices;
 pub mod pictures;
 mod placed;
+pub mod rivals;
 pub mod rows;
 pub mod rsm;
 mod run;
@@ -51,10 +52,11 @@ use rows::Rows;
 use run::Run;
 use worst::Worst;
 
-/// Of which scenes Embree is asked in world space.
+/// Of which scenes Embree is asked in world space, or rivals of the lists are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Extent {
-    /// Those of at most [`embree::WORLD_MAX`] items, so that it costs a default run little
+    /// Those of at most [`embree::WORLD_MAX`] items, or [`rivals::WORK_MAX`] of work, so that it
+    /// costs a default run little
     #[default]
     Small,
     /// All of them
@@ -72,6 +74,8 @@ pub struct Options {
     pub embree: bool,
     /// Of which scenes Embree is asked in world space as well.
     pub world: Extent,
+    /// Of which scenes the rivals of the lists are compared.
+    pub rivals: Extent,
     /// Raster paths.
     pub paths: Vec<Path>,
     /// From which stage on GPU legs use their own results.
@@ -97,6 +101,7 @@ impl Default for Options {
             broken: Vec::new(),
             embree: true,
             world: Extent::default(),
+            rivals: Extent::default(),
             paths: Path::ALL.to_vec(),
             from: From::default(),
             vertex: Vertices::default(),

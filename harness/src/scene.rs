@@ -1,5 +1,6 @@
 //! Scenes: from scene.toml or a bare mesh to what every leg is given.
 
+mod blending;
 pub mod expect;
 pub mod file;
 mod fit;

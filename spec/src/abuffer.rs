@@ -12,13 +12,25 @@
 //! that overflow can lose that fragment, never a list; depth 1 is
 //! [`crate::vertex::DEPTH_ONE`].
 
+mod alpha;
+mod defocus;
+mod density;
+mod dual;
 mod nearest;
+mod peel;
+mod weighted;
 
 use crate::bound::{Bounded, TINY, gamma};
 use crate::raster::{Fragment, cover_only};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
+pub use alpha::{Target, alpha};
+pub use defocus::{Lens, RADIUS_MAX, defocus};
+pub use density::{attenuation, density};
+pub use dual::{dual, halves, middle};
 pub use nearest::nearest_layers;
+pub use peel::{LAYERS_MAX, peel};
+pub use weighted::{SUM_LEAST, WEIGHT_LEAST, WEIGHT_MOST, weighted};
 
 /// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").
 pub const EOL: u32 = u32::MAX;
@@ -67,7 +79,7 @@ pub struct Lists {
 
 /// Lists as runs of an array: `offsets[p]..offsets[p + 1]` is pixel `p`, nearest
 /// fragment first, ties by [`Fragment::prim`].
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sorted {
     /// Where each pixel's run starts; one entry more than there are pixels.
     pub offsets: Vec<u32>,
@@ -199,20 +211,13 @@ pub fn resolve(
     opaque: &Opaque,
     sorted: &Sorted,
 ) -> Vec<[Bounded; 3]> {
-    let behind = |pixel: usize| match opaque.prim[pixel] {
-        NOTHING => scene.background,
-        prim => {
-            let [r, g, b, _] = colour(scene, primitives, prim);
-            [r, g, b]
-        }
-    };
     let blend = |pixel: usize| {
         let visible = sorted
             .list(pixel)
             .iter()
             .filter(|f| f.key < opaque.key[pixel]);
         let layers: Vec<[f32; 4]> = visible.map(|f| colour(scene, primitives, f.prim)).collect();
-        over(&layers, behind(pixel))
+        over(&layers, behind(scene, primitives, opaque, pixel))
     };
     (0..primitives.size.pixels()).map(blend).collect()
 }
@@ -246,6 +251,17 @@ fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
     }
     add(n, transmittance, behind);
     sum
+}
+
+/// What lies behind a pixel's layers.
+fn behind(scene: &Scene, primitives: &Primitives, opaque: &Opaque, pixel: usize) -> [f32; 3] {
+    match opaque.prim[pixel] {
+        NOTHING => scene.background,
+        prim => {
+            let [r, g, b, _] = colour(scene, primitives, prim);
+            [r, g, b]
+        }
+    }
 }
 
 fn is_opaque(scene: &Scene, primitives: &Primitives, prim: u32) -> bool {

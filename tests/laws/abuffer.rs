@@ -6,6 +6,8 @@ mod nearest;
 mod order;
 #[path = "abuffer/resolve.rs"]
 mod resolve;
+#[path = "abuffer/rivals.rs"]
+mod rivals;
 
 use proptest::prelude::*;
 use triptych_spec::abuffer::{EOL, Lists, NOTHING, Node, Opaque, Sorted, build, opaque, sort};

@@ -3,13 +3,18 @@
 use std::sync::OnceLock;
 
 use proptest::prelude::*;
+use triptych_gpu::abuffer::rivals::{Given, Single, once};
+use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
+use triptych_harness::compare::image;
 use triptych_harness::observe::Observed;
-use triptych_harness::plan::Plan;
+use triptych_harness::plan::{Asked, Plan};
 use triptych_harness::replay::gpu::{Adapter, Adapters, From, GpuLeg};
 use triptych_harness::replay::rows::Rows;
 use triptych_harness::replay::spec::SpecRun;
+use triptych_harness::replay::{Extent, rivals};
 use triptych_harness::row::Verdict;
+use triptych_spec::abuffer::{Lens, Target};
 use triptych_spec::vertex::{GUARD, guard_origin};
 
 use super::abuffer::{Layers, coloured};
@@ -101,6 +106,78 @@ proptest! {
             for path in [Path::Compute, Path::Fragment, Path::Native] {
                 if path != Path::Fragment || adapter.bits(path) == layers.primitives.bits {
                     agrees(&layers, adapter, path, skip)?;
+                }
+            }
+        }
+    }
+}
+
+/// Runs every rival and compares each, with a medium and a lens.
+fn rivals_agree(layers: &Layers, adapter: &Adapter, path: Path) -> Result<(), TestCaseError> {
+    let lens = Lens {
+        focus: 1 << 30,
+        aperture: 9,
+        radius: 3,
+    };
+    let asked = Asked {
+        rivals: true,
+        density: Some(2.5),
+        defocus: Some(lens),
+    };
+    let plan = Plan::asking(&layers.scene, true, asked);
+    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
+    let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
+    let leg = GpuLeg {
+        adapter,
+        path,
+        scene: &layers.scene,
+        spec: &spec,
+        plan: &plan,
+        capacity: None,
+        from: From::Cover,
+    };
+    let mut rows = Rows::new("law", "abuffer");
+    let failed = |e: GpuError| TestCaseError::fail(e.to_string());
+    rivals::run(&leg, Extent::All, &mut rows).map_err(failed)?;
+    let words = || rows.described.join("\n");
+    let transparent = layers.scene.triangles.iter().any(|t| !t.is_opaque());
+    for row in &rows.rows {
+        let verdict = row.verdict();
+        prop_assert_ne!(verdict, Verdict::Diverge, "{:?}\n{}", row, words());
+        prop_assert_eq!(verdict == Verdict::Agree, transparent, "{:?}", row);
+    }
+    if path == Path::Fragment && transparent {
+        let rasterizer = leg.rasterizer().map_err(failed)?;
+        let is_opaque = |prim| spec.value.is_opaque(prim);
+        let given = Given {
+            opaque: &spec.value.opaque,
+            background: layers.scene.background,
+        };
+        let half = Single::Alpha { half: true };
+        let seen = once(&rasterizer, half, given, is_opaque).map_err(failed)?;
+        let must = spec
+            .value
+            .rivals
+            .alpha(Target::Half, &layers.scene, &spec.value);
+        let judged = image::compare(&must.image, &seen.image, layers.scene.size.width);
+        prop_assert_eq!(judged.differ(), 0, "16 bits: {:?}", judged.described);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(6))]
+
+    /// From the same triangles, every adapter and path peels the spec's layers to the bit, and
+    /// has the pictures of all rivals inside their bounds.
+    #[test]
+    fn random_rivals(layers in layers()) {
+        for adapter in adapters() {
+            for path in Path::ALL {
+                let can = path != Path::Native || adapter.native.is_some();
+                let same = path != Path::Fragment || adapter.bits(path) == layers.primitives.bits;
+                if can && same {
+                    rivals_agree(&layers, adapter, path)?;
                 }
             }
         }

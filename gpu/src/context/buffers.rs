@@ -27,6 +27,19 @@ impl Gpu {
         self.buffer(what, bytes, usage, false)
     }
 
+    /// The same for copies alone, of which no kernel sees anything.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`] if the adapter does not have it.
+    pub(crate) fn storage_unbound(
+        &self,
+        what: &'static str,
+        bytes: u64,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        self.buffer(what, bytes.max(16), usage, false)
+    }
+
     /// A storage buffer that holds `data`.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use triptych_spec::scene::Size;
 use triptych_spec::vertex::{GUARD, guard_origin};
 
 use super::{Path, Rasterizer, Work};
@@ -13,6 +14,10 @@ use crate::timer::Writes;
 /// A pass that is ready.
 pub(crate) struct Ready {
     pub(super) kernel: Arc<Kernel>,
+    /// The stage whose kernel it runs.
+    pub(super) stage: String,
+    /// Whether several invocations may work on one pixel.
+    pub(super) shared: bool,
     group: wgpu::BindGroup,
     frame: Frame,
     /// Invocations, if it is a compute pass.
@@ -40,6 +45,18 @@ impl Rasterizer<'_> {
                 self.kernels.fragment(self.gpu, file, place, &entry)?
             }
         };
+        self.ready_kernel(&kernel, stage, frame, work, buffers)
+    }
+
+    /// The passes of a kernel over a band: one for each batch.
+    pub(crate) fn ready_kernel(
+        &self,
+        kernel: &Arc<Kernel>,
+        stage: &str,
+        frame: Frame,
+        work: &Work,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Vec<Ready>, GpuError> {
         let pass = |batch: &super::work::Batch| {
             let frame = Frame {
                 work_first: batch.first,
@@ -58,6 +75,8 @@ impl Rasterizer<'_> {
             all.extend_from_slice(buffers);
             Ok(Ready {
                 kernel: kernel.clone(),
+                stage: stage.into(),
+                shared: true,
                 group: kernel.bind(self.gpu, &all),
                 frame,
                 invocations: frame.items,
@@ -81,11 +100,36 @@ impl Rasterizer<'_> {
         Ok(Ready {
             group: kernel.bind(self.gpu, &all),
             kernel,
+            stage: stage.into(),
+            shared: false,
             frame,
             // A target of 2048 x 2048 pixels is 65,536 workgroups, one more than allowed
             // in a row; bands of the full size are split before that.
             invocations: frame.width * frame.rows,
         })
+    }
+}
+
+impl Rasterizer<'_> {
+    /// Records a pass whose colours are blended into other targets than this one's, and notes
+    /// it.
+    pub(crate) fn record_into(
+        &self,
+        ready: &Ready,
+        targets: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        encoder: &mut wgpu::CommandEncoder,
+        writes: Option<Writes<'_>>,
+    ) {
+        let Pipeline::Render(pipeline) = &ready.kernel.pipeline else {
+            unreachable!("colours are those of fragments");
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: targets,
+            timestamp_writes: writes.map(Writes::render),
+            ..Default::default()
+        });
+        ready.draw(pipeline, self.size, &mut pass);
+        self.note(&ready.stage, ready.shared, &ready.kernel);
     }
 }
 
@@ -108,17 +152,21 @@ impl Ready {
                 pass.dispatch_workgroups(self.invocations.div_ceil(WORKGROUP), 1, 1);
             }
             Pipeline::Render(pipeline) => {
-                let size = rasterizer.size;
                 let mut pass = begin_render(encoder, &rasterizer.target, writes);
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &self.group, &[]);
-                let side = GUARD as f32;
-                let origin = [guard_origin(size.width), guard_origin(size.height)];
-                pass.set_viewport(origin[0] as f32, origin[1] as f32, side, side, 0.0, 1.0);
-                pass.set_scissor_rect(0, self.frame.first_row, size.width, self.frame.rows);
-                pass.draw(0..3 * self.frame.work_count, 0..1);
+                self.draw(pipeline, rasterizer.size, &mut pass);
             }
         }
+    }
+
+    /// The triangles of its batch.
+    fn draw(&self, pipeline: &wgpu::RenderPipeline, size: Size, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        let side = GUARD as f32;
+        let origin = [guard_origin(size.width), guard_origin(size.height)];
+        pass.set_viewport(origin[0] as f32, origin[1] as f32, side, side, 0.0, 1.0);
+        pass.set_scissor_rect(0, self.frame.first_row, size.width, self.frame.rows);
+        pass.draw(0..3 * self.frame.work_count, 0..1);
     }
 }
 

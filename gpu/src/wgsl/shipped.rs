@@ -20,6 +20,7 @@ impl Sources {
     pub fn shipped(native: bool) -> Self {
         let mut files = shipped!(
             "abuffer",
+            "alpha",
             "asked",
             "bin",
             "bricks",
@@ -28,7 +29,10 @@ impl Sources {
             "coarse",
             "counter",
             "cover",
+            "defocus",
+            "density",
             "depth",
+            "dual",
             "frame",
             "grid",
             "hbao",
@@ -40,15 +44,19 @@ impl Sources {
             "march",
             "meet",
             "mirror",
+            "near",
+            "near_wide",
             "nearest",
             "opened",
             "overlap",
             "parameters",
+            "peel",
             "place",
             "raster",
             "ray",
             "receiver",
             "relink",
+            "rival",
             "rsm",
             "runs",
             "scan",
@@ -57,6 +65,7 @@ impl Sources {
             "shown",
             "slice",
             "sort",
+            "sorted",
             "surface",
             "sweep",
             "texel",
@@ -67,6 +76,7 @@ impl Sources {
             "view",
             "volume",
             "walk",
+            "weighted",
             "wide",
             "wide_native",
             "word",
@@ -77,5 +87,14 @@ impl Sources {
         }
         files.insert("network".into(), network::text().into());
         Self(files)
+    }
+
+    /// The same where the adapter has atomics of 64-bit integers as well
+    /// (`SHADER_INT64_ATOMIC_MIN_MAX`): depth peeling finds key and triangle in one pass.
+    pub fn with_wide_atomics(mut self) -> Self {
+        if let Some(text) = self.0.get("near_wide").cloned() {
+            self.0.insert("near".into(), text);
+        }
+        self
     }
 }

@@ -12,10 +12,12 @@ use super::{Cell, Mutant};
 use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
-use crate::registry::Chain;
+use crate::registry::{Chain, FAMILIES};
+use crate::replay::Extent;
 use crate::replay::gpu::{Adapter, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
+use crate::replay::rivals;
 use crate::replay::rows::Rows;
 use crate::replay::rsm::{RsmLeg, RsmRun};
 use crate::replay::spec::SpecRun;
@@ -44,9 +46,20 @@ pub(super) struct Ground {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Setting {
     path: Path,
-    /// Vertex stages, or those that start from the spec's triangles.
-    vertex: bool,
+    /// What is compared.
+    part: Part,
     bindings: Option<u64>,
+}
+
+/// What of a scene of triangles is compared.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Part {
+    /// The vertex stages.
+    Vertex,
+    /// The stages that start from the spec's triangles.
+    Lists,
+    /// The rivals of the lists.
+    Rivals,
 }
 
 /// A cell, and whether the shipped kernels were asked for it.
@@ -69,7 +82,7 @@ impl Ground {
             }
         }
         Ok(Self {
-            plan: Plan::new(&loaded.scene, true),
+            plan: Plan::of(&loaded, true),
             loaded,
             grid,
             rsm,
@@ -102,7 +115,7 @@ impl Ground {
         let sources = sources.map_err(|e| e.to_string())?;
         let setting = Setting {
             path,
-            vertex: touches_vertices(&sources, native).map_err(|e| e.to_string())?,
+            part: touched(&sources, native).map_err(|e| e.to_string())?,
             bindings: mutant.bindings,
         };
         if let Some(bytes) = setting.bindings {
@@ -155,7 +168,7 @@ impl Ground {
 
     /// The rows of a leg.
     fn rows(&self, adapter: &Adapter, setting: Setting) -> Result<Vec<Row>, GpuError> {
-        let Setting { path, vertex, .. } = setting;
+        let Setting { path, part, .. } = setting;
         let Loaded {
             scene,
             name,
@@ -194,7 +207,7 @@ impl Ground {
             return Ok(rows.rows);
         }
         let spec = &self.specs[&adapter.bits(path)];
-        if vertex {
+        if part == Part::Vertex {
             let leg = VertexLeg {
                 adapter,
                 path,
@@ -218,7 +231,10 @@ impl Ground {
             },
             from: From::default(),
         };
-        leg.run(&mut rows)?;
+        match part {
+            Part::Rivals => rivals::run(&leg, Extent::All, &mut rows)?,
+            _ => drop(leg.run(&mut rows)?),
+        }
         Ok(rows.rows)
     }
 
@@ -257,7 +273,25 @@ fn cannot_run(adapter: &Adapter, path: Path) -> Option<&'static str> {
     }
 }
 
-/// Whether the vertex stages' kernels are not those that ship.
-fn touches_vertices(sources: &Sources, native: bool) -> Result<bool, WgslError> {
-    Ok(sources.link("vertex")?.text != Sources::shipped(native).link("vertex")?.text)
+/// Which stages' kernels are not those that ship: the first of them have the defect.
+fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError> {
+    let shipped = Sources::shipped(native);
+    let differs = |file: &&str| -> Result<bool, WgslError> {
+        Ok(sources.link(file)?.text != shipped.link(file)?.text)
+    };
+    if differs(&"vertex")? {
+        return Ok(Part::Vertex);
+    }
+    for file in ["raster", "abuffer"] {
+        if differs(&file)? {
+            return Ok(Part::Lists);
+        }
+    }
+    let rivals = FAMILIES.iter().find(|family| family.name == "abuffer");
+    for file in rivals.map_or(&[][..], |family| family.files) {
+        if differs(file)? {
+            return Ok(Part::Rivals);
+        }
+    }
+    Ok(Part::Lists)
 }

@@ -1,4 +1,4 @@
-//! The table of mutants: one file for each family.
+//! The table of mutants: one file for each family, and one for the rivals of the A-buffer.
 
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -12,11 +12,12 @@ use crate::corpus::{self, Entry};
 use crate::replay::gpu::PathName;
 use crate::text::hex;
 
-const TABLES: [(&str, &str); 7] = [
+const TABLES: [(&str, &str); 8] = [
     ("vertex.toml", include_str!("vertex.toml")),
     ("raster.toml", include_str!("raster.toml")),
     ("abuffer.toml", include_str!("abuffer.toml")),
     ("tiles.toml", include_str!("tiles.toml")),
+    ("rivals.toml", include_str!("rivals.toml")),
     ("grid.toml", include_str!("grid.toml")),
     ("rsm.toml", include_str!("rsm.toml")),
     ("ldm.toml", include_str!("ldm.toml")),

@@ -6,6 +6,7 @@ use super::{Chain, Family, Stage, Twin};
 pub const FAMILIES: &[Family] = &[
     Family {
         name: "vertex",
+        files: &[],
         chain: Chain::Frame,
         stages: &[
             vertex("transform", &["transform"]),
@@ -16,6 +17,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "raster",
+        files: &[],
         chain: Chain::Frame,
         stages: &[Stage {
             name: "cover",
@@ -26,6 +28,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "abuffer",
+        files: &["alpha", "defocus", "density", "dual", "peel", "weighted"],
         chain: Chain::Frame,
         stages: &[
             Stage {
@@ -40,11 +43,67 @@ pub const FAMILIES: &[Family] = &[
             },
             per_pixel("sort", &["sort"]),
             per_pixel("resolve", &["resolve"]),
+            Stage {
+                name: "peel",
+                compute: Twin::Entries(&[
+                    "peel_clear",
+                    "peel_nearest",
+                    "peel_first",
+                    "peel",
+                    "peel_behind",
+                ]),
+                fragment: Twin::Entries(&["peel_nearest_fragment", "peel_first_fragment"]),
+            },
+            Stage {
+                name: "dual",
+                compute: Twin::Entries(&[
+                    "dual_clear",
+                    "dual_nearest",
+                    "dual_first",
+                    "dual",
+                    "dual_behind",
+                ]),
+                fragment: Twin::Entries(&["dual_nearest_fragment", "dual_first_fragment"]),
+            },
+            Stage {
+                name: "alpha",
+                compute: Twin::Entries(&[
+                    "alpha_clear",
+                    "alpha_next",
+                    "alpha",
+                    "alpha_single",
+                    "alpha_half",
+                    "alpha_behind",
+                ]),
+                fragment: Twin::Entries(&["alpha_fragment"]),
+            },
+            Stage {
+                name: "weighted",
+                compute: Twin::Entries(&[
+                    "weighted_clear",
+                    "weighted",
+                    "weighted_behind",
+                    "weighted_blended",
+                ]),
+                fragment: Twin::Entries(&["weighted_fragment"]),
+            },
+            per_pixel("density", &["density_clear", "density"]),
+            per_pixel(
+                "defocus",
+                &[
+                    "defocus_clear",
+                    "defocus_layer",
+                    "defocus",
+                    "defocus_surface",
+                    "defocus_behind",
+                ],
+            ),
         ],
         no_corpus: None,
     },
     Family {
         name: "tiles",
+        files: &[],
         chain: Chain::Frame,
         stages: &[
             in_tiles(
@@ -78,6 +137,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "grid",
+        files: &[],
         chain: Chain::Rays,
         stages: &[
             in_cells("count", &["count", "count_chunks"]),
@@ -99,6 +159,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "rsm",
+        files: &[],
         chain: Chain::Indirect,
         stages: &[
             of_pixels("gbuffer", &["gbuffer"]),
@@ -114,6 +175,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "ldm",
+        files: &[],
         chain: Chain::Maps,
         stages: &[
             of_maps(

@@ -88,6 +88,15 @@ fn numbered<F>(found: Vec<(String, F)>) -> Vec<(String, F)> {
     found.into_iter().map(number).collect()
 }
 
+/// Kernels for an adapter with 64-bit integers, and with atomics of them if it has those.
+fn native(gpu: &Gpu) -> Sources {
+    let sources = Sources::shipped(true);
+    match gpu.has_int64_atomics() {
+        true => sources.with_wide_atomics(),
+        false => sources,
+    }
+}
+
 impl Adapter {
     /// Opens and calibrates one adapter under this name.
     ///
@@ -96,9 +105,7 @@ impl Adapter {
     pub fn open(adapter: &wgpu::Adapter, name: &str) -> Result<Self, GpuError> {
         let gpu = Gpu::open_as(adapter, name)?;
         let kernels = Kernels::new(Sources::shipped(false));
-        let native = gpu
-            .has_int64()
-            .then(|| Kernels::new(Sources::shipped(true)));
+        let native = gpu.has_int64().then(|| Kernels::new(native(&gpu)));
         let grid = calibrate(&gpu, &kernels)?;
         Ok(Self {
             gpu,
@@ -126,9 +133,13 @@ impl Adapter {
         if foreign.is_empty() {
             return;
         }
-        let kernels = |native| Kernels::with_foreign(Sources::shipped(native), foreign);
-        self.kernels = kernels(false);
-        self.native = self.native.take().map(|_| kernels(true));
+        self.kernels = Kernels::with_foreign(Sources::shipped(false), foreign);
+        // A user's kernel knows the baseline's bindings.
+        let wide = || match foreign.iter().any(|f| f.stage.name == "peel") {
+            true => Kernels::with_foreign(Sources::shipped(true), foreign),
+            false => Kernels::with_foreign(native(&self.gpu), foreign),
+        };
+        self.native = self.native.is_some().then(wide);
         self.foreign = foreign.to_vec();
     }
 

@@ -29,7 +29,8 @@ use crate::observe::{self, Observed};
 use crate::plan::Plan;
 use crate::row::Class;
 pub use from::From;
-use lists::{join, relink};
+use lists::join;
+pub(super) use lists::relink;
 pub use path_name::PathName;
 pub use vertices::Vertices;
 

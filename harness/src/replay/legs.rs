@@ -10,7 +10,7 @@ use super::run::Run;
 use super::spec::SpecRun;
 use super::stop::Stop;
 use super::vertex::{self, VertexLeg};
-use super::{Options, end_to_end, hardware, own_vertices, skips};
+use super::{Options, end_to_end, hardware, own_vertices, rivals, skips};
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
@@ -117,6 +117,7 @@ impl Run<'_> {
         };
         let spots = self.rows.spots.len();
         let seen = leg.run(&mut self.rows)?;
+        rivals::run(&leg, self.options.rivals, &mut self.rows)?;
         if let Some(moved) = moved.as_ref().filter(|_| !from_own && !leg.by_band()) {
             // Whatever the leg was handed before, this run takes nothing but vertices.
             let leg = GpuLeg {

@@ -60,7 +60,7 @@ impl<'a> Run<'a> {
             loaded,
             adapters,
             options,
-            plan: Plan::new(&loaded.scene, options.skip),
+            plan: Plan::of(loaded, options.skip),
             spec: None,
             grid: None,
             rsm: None,
@@ -170,12 +170,14 @@ impl<'a> Run<'a> {
             from,
             vertex,
             world,
+            rivals,
             skip,
             paths,
             pictures,
             ..
         } = self.options;
-        let options = format!("{from:?} {vertex:?} {world:?} {skip} {paths:?} {pictures}");
+        let options =
+            format!("{from:?} {vertex:?} {world:?} {rivals:?} {skip} {paths:?} {pictures}");
         let mut all = vec![
             self.loaded.name.as_str(),
             &self.loaded.stats.sha256,

@@ -8,6 +8,7 @@ use triptych_spec::raster::{self, Fragment};
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
+use super::rivals::Rivals;
 use crate::plan::Plan;
 
 /// More fragments than this are refused: with nodes, colours, sorted lists and the
@@ -30,6 +31,8 @@ pub struct SpecRun {
     pub sorted: Sorted,
     /// The picture, with bounds.
     pub image: Vec<[Bounded; 3]>,
+    /// The rivals of its lists.
+    pub rivals: Rivals,
     /// Time of each stage.
     pub times: Times,
 }
@@ -94,6 +97,7 @@ impl SpecRun {
             lists,
             sorted,
             image,
+            rivals: Rivals::new(plan.asked),
             times: Times {
                 build,
                 sort,
@@ -109,6 +113,16 @@ impl SpecRun {
         let mut fragments = Vec::new();
         raster::cover(&self.primitives, |f| fragments.push(f));
         fragments
+    }
+
+    /// Most transparent fragments of a pixel in front of its opaque surface.
+    pub fn layers(&self) -> u32 {
+        let visible = |pixel: usize| {
+            let list = self.sorted.list(pixel).iter();
+            list.take_while(|f| f.key < self.opaque.key[pixel]).count()
+        };
+        let most = (0..self.opaque.key.len()).map(visible).max();
+        u32::try_from(most.unwrap_or(0)).expect("fewer than 2^32 fragments")
     }
 
     /// Whether a row of `prims` is opaque.

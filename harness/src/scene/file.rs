@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::blending::{Defocus, Density};
 use super::expect::Expect;
 use super::grid::Grid;
 use super::ldm::Ldm;
@@ -250,12 +251,16 @@ impl Default for Hair {
 }
 
 /// Options of the A-buffer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Abuffer {
     /// Nodes of the first attempt; fewer than needed makes it overflow.
     #[serde(default)]
     pub capacity: Capacity,
+    /// A medium between the layers; without it stage `density` does not run.
+    pub density: Option<Density>,
+    /// A lens; without it stage `defocus` does not run.
+    pub defocus: Option<Defocus>,
 }
 
 /// Shares of what may go unjudged.

@@ -45,6 +45,9 @@ pub struct Args {
     /// stage's bindings as WGSL to start from
     #[arg(long, value_name = "STAGE=FILE")]
     pub(super) kernel: Vec<String>,
+    /// Compare the techniques that need no lists on scenes of any size, not only on small ones
+    #[arg(long)]
+    rivals: bool,
     /// Run everything, whether a scene needs it or not
     #[arg(long)]
     no_skip: bool,
@@ -113,6 +116,7 @@ impl Args {
         let from = self.gpu_from.filter(|from| *from != From::default());
         options.extend(from.map(|from| chosen("--gpu-from", from)));
         options.extend(self.kernel.iter().map(|kernel| option("--kernel", kernel)));
+        options.extend(self.rivals.then(|| "--rivals".to_owned()));
         options.extend(self.no_skip.then(|| "--no-skip".to_owned()));
         Again { legs, options }
     }
@@ -136,6 +140,10 @@ impl Args {
             broken: Vec::new(),
             embree: wanted(Leg::Embree),
             world: match self.leg.contains(&Leg::Embree) {
+                true => Extent::All,
+                false => Extent::Small,
+            },
+            rivals: match self.rivals {
                 true => Extent::All,
                 false => Extent::Small,
             },

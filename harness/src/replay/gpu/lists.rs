@@ -7,7 +7,7 @@ use crate::compare;
 use crate::replay::spec::SpecRun;
 
 /// The spec's lists with links in sorted order.
-pub(super) fn relink(spec: &SpecRun) -> Lists {
+pub(in crate::replay) fn relink(spec: &SpecRun) -> Lists {
     let (sorted, faces) = (&spec.sorted, &spec.faces);
     let mut lists = Lists {
         heads: Vec::with_capacity(spec.lists.heads.len()),

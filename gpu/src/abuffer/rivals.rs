@@ -1,0 +1,124 @@
+//! Techniques that need no lists, the rivals of the A-buffer: each is set up once, and its
+//! passes may be recorded any number of times.
+//!
+//! Yang, Hensley, Grün and Thibieroz (2010), section 2, table 1 and figure 4.
+
+mod following;
+mod once;
+mod peeling;
+mod peels;
+mod targets;
+
+use std::time::Duration;
+
+use triptych_spec::abuffer::{Opaque, Sorted};
+
+use crate::context::Gpu;
+use crate::error::GpuError;
+use crate::frame::{Band, Frame};
+use crate::pass::Pass;
+use crate::raster::Rasterizer;
+pub use following::{Following, Shading, follow};
+pub use once::{Once, Single, once};
+pub use peeling::{Peeling, Technique, is_wide};
+pub use peels::peel;
+
+/// What rivals are given.
+#[derive(Clone, Copy)]
+pub struct Given<'a> {
+    /// The nearest opaque surface of each pixel of the target.
+    pub opaque: &'a Opaque,
+    /// Linear background colour.
+    pub background: [f32; 3],
+}
+
+/// What came of a rival.
+#[derive(Default)]
+pub struct Rival {
+    /// The picture, row by row.
+    pub image: Vec<[f32; 3]>,
+    /// The fragments that were peeled, nearest first; empty lists where none are.
+    pub sorted: Sorted,
+    /// Fragments that the device counted as it peeled them.
+    pub counted: u64,
+    /// Time on the device, without transfers.
+    pub time: Duration,
+    /// What was recorded.
+    pub passes: Vec<Pass>,
+    /// Bytes of its buffers and targets, those of the largest band.
+    pub bytes: u64,
+    /// Layers that it recorded: times that the triangles were gone through.
+    pub layers: u32,
+}
+
+/// The opaque surfaces of a band on the device.
+pub struct Surfaces {
+    key: wgpu::Buffer,
+    prim: wgpu::Buffer,
+}
+
+impl Surfaces {
+    /// The surfaces of a band.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn upload(
+        rasterizer: &Rasterizer<'_>,
+        opaque: &Opaque,
+        band: Band,
+    ) -> Result<Self, GpuError> {
+        let gpu = rasterizer.gpu;
+        let first = (band.first * rasterizer.size.width) as usize;
+        let pixels = first..first + band.pixels(rasterizer.size) as usize;
+        Ok(Self {
+            key: gpu.upload("opaque_key", &opaque.key[pixels.clone()])?,
+            prim: gpu.upload("opaque_prim", &opaque.prim[pixels])?,
+        })
+    }
+
+    /// Those that another technique found, in its buffers.
+    pub fn of(key: &wgpu::Buffer, prim: &wgpu::Buffer) -> Self {
+        Self {
+            key: key.clone(),
+            prim: prim.clone(),
+        }
+    }
+
+    fn named(&self) -> [(&'static str, &wgpu::Buffer); 2] {
+        [("opaque_key", &self.key), ("opaque_prim", &self.prim)]
+    }
+}
+
+/// Pixels that a dispatch of one workgroup row can serve.
+const PIXELS_MAX: u64 = 65_535 * crate::frame::WORKGROUP as u64;
+
+/// The whole target, or bands of it, top to bottom, of which a pixel takes up to `bytes` in a
+/// buffer.
+fn bands(rasterizer: &Rasterizer<'_>, bytes: u64) -> Vec<Band> {
+    let most = PIXELS_MAX.min(rasterizer.gpu.binding_limit() / bytes);
+    let mut left = vec![Band::whole(rasterizer.size)];
+    let mut bands = Vec::new();
+    while let Some(band) = left.pop() {
+        match band.halves() {
+            Some([upper, lower]) if u64::from(band.pixels(rasterizer.size)) > most => {
+                left.extend([lower, upper]);
+            }
+            // A single row that is too much is refused by the buffer's name.
+            _ => bands.push(band),
+        }
+    }
+    bands
+}
+
+fn frame(rasterizer: &Rasterizer<'_>, band: Band, [r, g, b]: [f32; 3]) -> Frame {
+    Frame {
+        background: [r, g, b, 1.0],
+        ..rasterizer.frame(band)
+    }
+}
+
+/// The picture of so many pixels.
+fn image(gpu: &Gpu, picture: &wgpu::Buffer, pixels: u32) -> Result<Vec<[f32; 3]>, GpuError> {
+    let picture: Vec<[f32; 4]> = gpu.read(picture, pixels as usize)?;
+    Ok(picture.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+}

@@ -1,0 +1,60 @@
+//! Which rivals of the lists a scene asks for.
+
+use triptych_spec::abuffer::Lens;
+
+use super::Pass;
+use crate::registry::RIVALS;
+use crate::scene::Loaded;
+
+/// What a scene asks for beside its lists.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// The techniques that need no lists.
+    pub rivals: bool,
+    /// A medium between the layers, of this density over the depth range.
+    pub density: Option<f32>,
+    /// A lens.
+    pub defocus: Option<Lens>,
+}
+
+impl Asked {
+    /// Scenes of family `raster` are about coverage and keys: they have rivals only if they
+    /// state what those need.
+    pub fn by(loaded: &Loaded) -> Self {
+        let stated = loaded.file.abuffer;
+        Self {
+            rivals: loaded.family != "raster",
+            density: stated.density.map(|density| density.0),
+            defocus: stated.defocus.map(|defocus| defocus.0),
+        }
+    }
+
+    /// A pass for each rival. Nothing of the picture needs it, so that it is left out also
+    /// where nothing is skipped.
+    pub(super) fn passes(self, transparent: usize) -> impl Iterator<Item = Pass> {
+        RIVALS.into_iter().map(move |name| {
+            let needed = self.needed(name, transparent);
+            Pass {
+                name,
+                runs: needed.is_ok(),
+                reason: needed.unwrap_or_else(str::to_owned),
+            }
+        })
+    }
+
+    fn needed(self, name: &str, transparent: usize) -> Result<String, &'static str> {
+        match name {
+            _ if transparent == 0 => Err("no transparent triangles"),
+            "density" => {
+                let density = self.density.ok_or("the scene states no density")?;
+                Ok(format!("a medium of density {density}"))
+            }
+            "defocus" => {
+                let lens = self.defocus.ok_or("the scene states no defocus")?;
+                Ok(format!("a lens of aperture {}", lens.aperture))
+            }
+            _ if !self.rivals => Err("scenes of raster are about coverage"),
+            _ => Ok(format!("{transparent} transparent triangles")),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What the spec makes of the rivals, each once, when it is first asked for.
+
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use triptych_spec::abuffer::{self, LAYERS_MAX, Lens, Sorted, Target};
+use triptych_spec::bound::Bounded;
+use triptych_spec::scene::Scene;
+
+use crate::plan::Asked;
+use crate::replay::spec::{SpecRun, timed};
+
+/// A picture.
+pub struct Picture {
+    /// Row by row, with bounds.
+    pub image: Vec<[Bounded; 3]>,
+    /// How long it took, with what it needs.
+    pub time: Duration,
+}
+
+/// Layers, and their picture.
+pub struct Layered {
+    /// Every pixel's fragments, as they are peeled.
+    pub sorted: Sorted,
+    /// What they show.
+    pub picture: Picture,
+}
+
+/// The spec's rivals of one set of triangles, and of one scene's parameters.
+#[derive(Default)]
+pub struct Rivals {
+    asked: Asked,
+    peel: OnceLock<Layered>,
+    dual: OnceLock<Layered>,
+    single: OnceLock<Picture>,
+    half: OnceLock<Picture>,
+    weighted: OnceLock<Picture>,
+    density: OnceLock<Picture>,
+    defocus: OnceLock<Picture>,
+}
+
+fn picture(image: impl FnOnce() -> Vec<[Bounded; 3]>) -> Picture {
+    let (image, time) = timed(image);
+    Picture { image, time }
+}
+
+fn layered(
+    peel: impl FnOnce() -> Sorted,
+    blend: impl FnOnce(&Sorted) -> Vec<[Bounded; 3]>,
+) -> Layered {
+    let (sorted, peeling) = timed(peel);
+    let mut picture = picture(|| blend(&sorted));
+    picture.time += peeling;
+    Layered { sorted, picture }
+}
+
+impl Rivals {
+    /// Nothing yet, of what a plan asks for.
+    pub fn new(asked: Asked) -> Self {
+        Self {
+            asked,
+            ..Self::default()
+        }
+    }
+
+    /// Stage `peel`, all layers.
+    pub fn peel(&self, scene: &Scene, spec: &SpecRun) -> &Layered {
+        let (prims, opaque) = (&spec.primitives, &spec.opaque);
+        self.peel.get_or_init(|| {
+            layered(
+                || abuffer::peel(scene, prims, opaque, LAYERS_MAX),
+                |sorted| abuffer::resolve(scene, prims, opaque, sorted),
+            )
+        })
+    }
+
+    /// Stage `dual`.
+    pub fn dual(&self, scene: &Scene, spec: &SpecRun) -> &Layered {
+        let (prims, opaque) = (&spec.primitives, &spec.opaque);
+        self.dual.get_or_init(|| {
+            layered(
+                || abuffer::dual(scene, prims, opaque),
+                |sorted| abuffer::halves(scene, prims, opaque, sorted),
+            )
+        })
+    }
+
+    /// Stage `alpha`.
+    pub fn alpha(&self, target: Target, scene: &Scene, spec: &SpecRun) -> &Picture {
+        let of = match target {
+            Target::Single => &self.single,
+            Target::Half => &self.half,
+        };
+        of.get_or_init(|| picture(|| abuffer::alpha(scene, &spec.primitives, &spec.opaque, target)))
+    }
+
+    /// Stage `weighted`.
+    pub fn weighted(&self, scene: &Scene, spec: &SpecRun) -> &Picture {
+        self.weighted
+            .get_or_init(|| picture(|| abuffer::weighted(scene, &spec.primitives, &spec.opaque)))
+    }
+
+    /// Stage `density` and its density, if there is one.
+    pub fn density(&self, scene: &Scene, spec: &SpecRun) -> Option<(f32, &Picture)> {
+        let (prims, opaque, sorted) = (&spec.primitives, &spec.opaque, &spec.sorted);
+        let sigma = self.asked.density?;
+        let shade = || picture(|| abuffer::density(scene, prims, opaque, sorted, sigma));
+        Some((sigma, self.density.get_or_init(shade)))
+    }
+
+    /// Stage `defocus` and its lens, if there is one.
+    pub fn defocus(&self, scene: &Scene, spec: &SpecRun) -> Option<(Lens, &Picture)> {
+        let (prims, opaque, sorted) = (&spec.primitives, &spec.opaque, &spec.sorted);
+        let lens = self.asked.defocus?;
+        let shade = || picture(|| abuffer::defocus(scene, prims, opaque, sorted, lens));
+        Some((lens, self.defocus.get_or_init(shade)))
+    }
+}
