@@ -12,12 +12,14 @@
 //! that overflow can lose that fragment, never a list; depth 1 is
 //! [`crate::vertex::DEPTH_ONE`].
 
+mod multisample;
 mod nearest;
 
 use crate::bound::{Bounded, TINY, gamma};
 use crate::raster::{Fragment, cover_only};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
+pub use multisample::{Order, average, resolve_pixels, resolve_samples, visible};
 pub use nearest::nearest_layers;
 
 /// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").
@@ -26,7 +28,8 @@ pub const EOL: u32 = u32::MAX;
 /// "No opaque surface": farther than every key.
 pub const NOTHING: u32 = u32::MAX;
 
-/// The nearest opaque surface of every pixel.
+/// The nearest opaque surface at every sample: those of a pixel follow each other, in order of
+/// the mask's bits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Opaque {
     /// Depth key, or [`NOTHING`].
@@ -82,28 +85,37 @@ impl Sorted {
     }
 }
 
+impl Opaque {
+    /// No surface at any sample.
+    pub fn nothing(primitives: &Primitives) -> Self {
+        let samples = primitives.size.pixels() * primitives.samples.count() as usize;
+        Self {
+            key: vec![NOTHING; samples],
+            prim: vec![NOTHING; samples],
+        }
+    }
+}
+
 /// Stage `opaque`: the smallest `(key, prim)` of the opaque triangles at each
-/// pixel (section 4.1, step 1).
+/// sample, with the true key there (section 4.1, step 1).
 pub fn opaque(scene: &Scene, primitives: &Primitives) -> Opaque {
-    let pixels = primitives.size.pixels();
-    let mut nearest = Opaque {
-        key: vec![NOTHING; pixels],
-        prim: vec![NOTHING; pixels],
-    };
+    let mut nearest = Opaque::nothing(primitives);
     let select = |prim| is_opaque(scene, primitives, prim);
     cover_only(primitives, select, |f| {
-        let pixel = f.pixel as usize;
-        if (f.key, f.prim) < (nearest.key[pixel], nearest.prim[pixel]) {
-            (nearest.key[pixel], nearest.prim[pixel]) = (f.key, f.prim);
-        }
+        multisample::surface(primitives, &f, |place, key| {
+            if (key, f.prim) < (nearest.key[place], nearest.prim[place]) {
+                (nearest.key[place], nearest.prim[place]) = (key, f.prim);
+            }
+        });
     });
     nearest
 }
 
 /// Stage `build`: transparent fragments into linked lists (section 4.1, step 2).
 ///
-/// A fragment is kept if and only if its key is less than the opaque key; with
-/// `depth_test` false, all are kept. Insertion follows section 3, steps 1 to 3.
+/// A fragment is kept if and only if its key is less than the opaque key at one of its
+/// samples or more, and its mask is these alone ([`visible`]); with `depth_test` false, all are
+/// kept as they are. Insertion follows section 3, steps 1 to 3.
 pub fn build(
     scene: &Scene,
     primitives: &Primitives,
@@ -120,8 +132,12 @@ pub fn build(
     };
     let select = |prim| !is_opaque(scene, primitives, prim);
     cover_only(primitives, select, |f| {
-        let hidden = depth_test && f.key >= opaque.key[f.pixel as usize];
-        if !hidden {
+        let mask = match depth_test {
+            true => visible(primitives, opaque, &f),
+            false => f.mask,
+        };
+        if mask != 0 {
+            let f = Fragment { mask, ..f };
             insert(&mut lists, f, colour(scene, primitives, f.prim));
         }
     });
@@ -193,28 +209,26 @@ pub fn sort(lists: &Lists) -> Sorted {
 /// multiplied by factors within 1 and then by the colour, which may be large: at
 /// most `(3i + 2) |c_i| TINY`. The colour itself, the product and the addition add
 /// three more.
+///
+/// With several samples it is the mean of theirs ([`resolve_pixels`]).
 pub fn resolve(
     scene: &Scene,
     primitives: &Primitives,
     opaque: &Opaque,
     sorted: &Sorted,
 ) -> Vec<[Bounded; 3]> {
-    let behind = |pixel: usize| match opaque.prim[pixel] {
+    resolve_pixels(scene, primitives, opaque, sorted)
+}
+
+/// What lies behind the layers at a sample.
+fn behind(scene: &Scene, primitives: &Primitives, opaque: &Opaque, sample: usize) -> [f32; 3] {
+    match opaque.prim[sample] {
         NOTHING => scene.background,
         prim => {
             let [r, g, b, _] = colour(scene, primitives, prim);
             [r, g, b]
         }
-    };
-    let blend = |pixel: usize| {
-        let visible = sorted
-            .list(pixel)
-            .iter()
-            .filter(|f| f.key < opaque.key[pixel]);
-        let layers: Vec<[f32; 4]> = visible.map(|f| colour(scene, primitives, f.prim)).collect();
-        over(&layers, behind(pixel))
-    };
-    (0..primitives.size.pixels()).map(blend).collect()
+    }
 }
 
 fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {

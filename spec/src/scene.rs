@@ -3,6 +3,7 @@
 //! harness), once, so that all legs start from the same bits.
 
 use crate::matrix::Matrix;
+use crate::raster::Samples;
 
 /// Size of the target in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +58,8 @@ impl Triangle {
 pub struct Scene {
     /// Size of the target.
     pub size: Size,
+    /// The samples of every pixel.
+    pub samples: Samples,
     /// Clip space from object space, one per instance (WebGPU's clip volume:
     /// `-w <= x, y <= w`, `0 <= z <= w`, y up).
     pub instances: Vec<Matrix>,

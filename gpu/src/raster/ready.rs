@@ -37,7 +37,13 @@ impl Rasterizer<'_> {
                     Some(_) => "place_handed",
                 };
                 let entry = format!("{stage}_fragment");
-                self.kernels.fragment(self.gpu, file, place, &entry)?
+                let samples = self.samples.count();
+                let file = match samples {
+                    1 => file.to_owned(),
+                    _ => format!("{file}_samples"),
+                };
+                self.kernels
+                    .fragment(self.gpu, &file, [place, &entry], samples)?
             }
         };
         let pass = |batch: &super::work::Batch| {

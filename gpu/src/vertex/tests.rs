@@ -38,6 +38,7 @@ fn spiral(triangles: u32, spare: u32) -> Scene {
         colour: [1.0; 4],
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
         size: Size {
             width: 64,
             height: 48,

@@ -7,6 +7,7 @@ use crate::grid::exact::minus;
 use crate::grid::lattice::{Lattice, Point};
 use crate::grid::ray::Ray;
 use crate::matrix::Matrix;
+use crate::raster::Samples;
 use crate::scene::{Scene, Size, Triangle, Vertex};
 use crate::vertex::TARGET_MAX;
 
@@ -102,6 +103,7 @@ impl View {
         let triangles = model.triangles.iter().zip(&model.colours);
         Scene {
             size: self.size,
+            samples: Samples::ONE,
             instances: vec![self.matrix],
             vertices: model.vertices.iter().map(vertex).collect(),
             triangles: (0..).zip(triangles).map(triangle).collect(),
