@@ -5,6 +5,9 @@ use triptych_spec::scene::Scene;
 use crate::registry::{Chain, stages_of};
 use crate::scene::Loaded;
 
+/// A condition inside stage resolve, where pixels have several samples.
+pub const ONCE: &str = "shade once";
+
 /// One pass: whether it runs, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pass {
@@ -29,6 +32,8 @@ pub struct Plan {
     pub depth_test: bool,
     /// Whether every fragment is streamed out and compared.
     pub cover: bool,
+    /// Whether pixels whose samples are all alike are shaded once.
+    pub once: bool,
 }
 
 impl Plan {
@@ -85,8 +90,21 @@ impl Plan {
                 (false, _) => "nothing is skipped: hidden fragments are stored".into(),
             },
         });
+        let samples = scene.samples.count();
+        let once = skip && samples > 1;
+        if samples > 1 {
+            passes.push(Pass {
+                name: ONCE,
+                runs: once,
+                reason: match once {
+                    true => format!("pixels whose {samples} samples are alike are shaded once"),
+                    false => "nothing is skipped: every sample is shaded".into(),
+                },
+            });
+        }
         Self {
             passes,
+            once,
             opaque: opaque_runs,
             lists,
             depth_test,

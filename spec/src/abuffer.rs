@@ -210,14 +210,21 @@ pub fn sort(lists: &Lists) -> Sorted {
 /// most `(3i + 2) |c_i| TINY`. The colour itself, the product and the addition add
 /// three more.
 ///
-/// With several samples it is the mean of theirs ([`resolve_pixels`]).
+/// With several samples it is the mean of theirs, with layers in the scene's order
+/// ([`resolve_pixels`], [`resolve_samples`]).
 pub fn resolve(
     scene: &Scene,
     primitives: &Primitives,
     opaque: &Opaque,
     sorted: &Sorted,
 ) -> Vec<[Bounded; 3]> {
-    resolve_pixels(scene, primitives, opaque, sorted)
+    match scene.order {
+        Order::Centroid => resolve_pixels(scene, primitives, opaque, sorted),
+        order @ Order::Sample => {
+            let samples = resolve_samples(scene, primitives, opaque, sorted, order);
+            average(&samples, primitives.samples.count())
+        }
+    }
 }
 
 /// What lies behind the layers at a sample.

@@ -72,6 +72,8 @@ pub fn painted(primitives: &Primitives, colours: &[[f32; 4]], background: [f32; 
         colour: *colour,
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: primitives.size,
         instances: Vec::new(),
         vertices: Vec::new(),

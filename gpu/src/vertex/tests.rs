@@ -39,6 +39,7 @@ fn spiral(triangles: u32, spare: u32) -> Scene {
     };
     Scene {
         samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: Size {
             width: 64,
             height: 48,

@@ -109,6 +109,8 @@ impl GpuLeg<'_> {
             opaque: self.plan.opaque,
             lists: self.plan.lists,
             depth_test: self.plan.depth_test,
+            order: self.scene.order,
+            once: self.plan.once,
             background: self.scene.background,
         };
         let inspect = |_: Band, lists: &Lists| certify(lists).longest();

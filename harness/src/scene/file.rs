@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
+pub use super::abuffer::{Abuffer, LayerOrder, SampleCount};
 use super::expect::Expect;
 use super::grid::Grid;
 use super::ldm::Ldm;
 use super::rsm::{Motion, Rsm};
 use super::value::{
-    Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
+    Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
 };
 use crate::generate::Generator;
 
@@ -28,6 +29,9 @@ pub struct SceneFile {
     pub seed: u64,
     /// Width and height in pixels.
     pub size: ImageSize,
+    /// Samples of a pixel, in their standard places: 1, 2, 4 or 8.
+    #[serde(default)]
+    pub samples: SampleCount,
     /// Linear colour behind everything; black if left out.
     #[serde(default)]
     pub background: Colour,
@@ -247,15 +251,6 @@ impl Default for Hair {
             stride: Self::every(),
         }
     }
-}
-
-/// Options of the A-buffer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Abuffer {
-    /// Nodes of the first attempt; fewer than needed makes it overflow.
-    #[serde(default)]
-    pub capacity: Capacity,
 }
 
 /// Shares of what may go unjudged.

@@ -2,6 +2,7 @@
 
 use super::parameters::within;
 use super::{Model, RsmError};
+use crate::abuffer::Order;
 use crate::camera::{Camera, Projection};
 use crate::grid::exact::minus;
 use crate::grid::lattice::{Lattice, Point};
@@ -104,6 +105,7 @@ impl View {
         Scene {
             size: self.size,
             samples: Samples::ONE,
+            order: Order::Centroid,
             instances: vec![self.matrix],
             vertices: model.vertices.iter().map(vertex).collect(),
             triangles: (0..).zip(triangles).map(triangle).collect(),

@@ -14,6 +14,7 @@ fn primitives() -> Primitives {
     let one = [[0, 256, 4], [300, 256, 4], [0, 556, 4]];
     let corners = [all(7), all(7), all(9), outside, [[0, 0, 1]; 3], one];
     Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: Size {
             width: 2,
             height: 2,
