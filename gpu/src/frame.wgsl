@@ -33,7 +33,7 @@ const GUARD: i32 = 4096;
 const SAMPLES_MAX: u32 = 8u;
 
 // Where a sample lies within its pixel, in sub-pixels.
-fn place_of(s: u32) -> vec2<i32> {
+fn sample_place(s: u32) -> vec2<i32> {
     let place = frame.places[s / 4u][s % 4u];
     return vec2(i32(place & 0xffffu), i32(place >> 16u));
 }

@@ -72,15 +72,15 @@ fn resolve_pixel(@builtin(global_invocation_id) id: vec3<u32>) {
         if p.merged == 1u && (node.mask & all_samples()) == all_samples() {
             seen[0] = over(seen[0], layer);
         } else {
+            for (var s = 1u; s < frame.samples && p.merged == 1u; s += 1u) {
+                seen[s] = seen[0];
+            }
+            p.merged = 0u;
             for (var s = 0u; s < frame.samples; s += 1u) {
-                if p.merged == 1u {
-                    seen[s] = seen[0];
-                }
                 if shows(node, id.x, s) {
                     seen[s] = over(seen[s], layer);
                 }
             }
-            p.merged = 0u;
         }
         p.left = node.next;
         i += 1u;

@@ -68,7 +68,7 @@ fn depths(s: Setup) -> vec3<u32> {
 
 // A sample of a pixel of the target, in sub-pixels.
 fn sample_at(x: u32, y: u32, s: u32) -> vec2<i32> {
-    return vec2<i32>(vec2(x, y) << vec2(frame.bits)) + place_of(s);
+    return vec2<i32>(vec2(x, y) << vec2(frame.bits)) + sample_place(s);
 }
 
 // The key of `prim` at a sample of a pixel of the band; `otherwise` where it does not cover

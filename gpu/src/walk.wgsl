@@ -38,9 +38,9 @@ fn find(item: u32) -> u32 {
 // First row of the band of which a sample lies at or below the triangle's top.
 fn first_row(s: Setup) -> u32 {
     let top = min(s.a.y, min(s.b.y, s.c.y));
-    var lowest = place_of(0u).y;
+    var lowest = sample_place(0u).y;
     for (var i = 1u; i < frame.samples; i += 1u) {
-        lowest = max(lowest, place_of(i).y);
+        lowest = max(lowest, sample_place(i).y);
     }
     // ceil((top - lowest) / 2^bits); the shift of a negative number rounds down.
     let row = -((lowest - top) >> frame.bits);
@@ -83,7 +83,7 @@ fn step_of(a: vec3<i32>, b: vec3<i32>) -> Wide {
 // Change of an edge function from sample 0 of a pixel to another. Edges are below 2^20 and
 // samples less than 2^8 sub-pixels apart, so it is below 2^29.
 fn shift_of(a: vec3<i32>, b: vec3<i32>, s: u32) -> i32 {
-    let by = place_of(s) - place_of(0u);
+    let by = sample_place(s) - sample_place(0u);
     return (b.x - a.x) * by.y - (b.y - a.y) * by.x;
 }
 

@@ -94,6 +94,13 @@ impl Opaque {
             prim: vec![NOTHING; samples],
         }
     }
+
+    /// How many of so many pixels show a surface at any of their samples.
+    pub fn pixels(&self, count: usize) -> usize {
+        let shows = |prims: &&[u32]| prims.iter().any(|p| *p != NOTHING);
+        let samples = (self.prim.len() / count.max(1)).max(1);
+        self.prim.chunks(samples).filter(shows).count()
+    }
 }
 
 /// Stage `opaque`: the smallest `(key, prim)` of the opaque triangles at each

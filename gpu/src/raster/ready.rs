@@ -82,7 +82,11 @@ impl Rasterizer<'_> {
     ) -> Result<Ready, GpuError> {
         let kernel = self.kernels.compute(self.gpu, file, stage)?;
         let uniform = self.gpu.uniform("frame", &frame)?;
-        let mut all = vec![("frame", &uniform), ("faces", &self.faces)];
+        let mut all = vec![
+            ("frame", &uniform),
+            ("corners", &self.corners),
+            ("faces", &self.faces),
+        ];
         all.extend_from_slice(buffers);
         Ok(Ready {
             group: kernel.bind(self.gpu, &all),

@@ -102,7 +102,10 @@ pub(super) fn scene(
     let plan = Plan::new(&loaded.scene, true);
     let mut done = Done::default();
     if loaded.scene.samples.count() > 1 {
-        let words = format!("{}: frames of one sample a pixel are timed alone", loaded.name);
+        let words = format!(
+            "{}: frames of one sample a pixel are timed alone",
+            loaded.name
+        );
         done.skipped.push(words);
         return Ok(done);
     }

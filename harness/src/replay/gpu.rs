@@ -16,7 +16,7 @@ use triptych_gpu::raster::{self, Path, Rasterizer};
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::scene::Scene;
 
-pub use super::adapter::{Adapter, Adapters};
+pub use super::adapter::{Adapter, Adapters, Drawn};
 pub use super::broken::Broken;
 use super::rows::Rows;
 use super::spec::SpecRun;

@@ -10,9 +10,7 @@ use super::expect::Expect;
 use super::grid::Grid;
 use super::ldm::Ldm;
 use super::rsm::{Motion, Rsm};
-use super::value::{
-    Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
-};
+use super::value::{Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most};
 use crate::generate::Generator;
 
 /// Most lights of a scene: each shines on every triangle.

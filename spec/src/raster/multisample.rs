@@ -4,7 +4,7 @@
 //! a pixel. So a row has a span for each, and a pixel's mask is which of them hold it. What a
 //! row may cover is the union of all: wider than any by up to a pixel.
 
-use super::samples::{SAMPLES_MAX, samples_of};
+use super::samples::{SAMPLES_MAX, Samples, samples_of};
 use super::{Fragment, Setup, Span, column, first_pixel};
 use crate::vertex::Primitives;
 
@@ -67,6 +67,24 @@ impl Setup {
                     mask,
                 });
             });
+        }
+    }
+}
+
+impl Primitives {
+    /// The triangles as one sample of every pixel sees them: moved so that it is in the middle,
+    /// as the only one. What this covers, with which keys, is what sample `s` does here.
+    #[must_use]
+    pub fn of_sample(&self, s: u32) -> Self {
+        let [x, y] = self.samples.point(s, [0, 0], self.bits);
+        let middle = 1_i64 << (self.bits - 1);
+        // Less than a pixel, and corners are below 2^21.
+        let by = [middle - x, middle - y].map(|d| i32::try_from(d).expect("less than a pixel"));
+        let moved = |[x, y, z]: &[i32; 3]| [x + by[0], y + by[1], *z];
+        Self {
+            samples: Samples::ONE,
+            snapped: self.snapped.iter().map(moved).collect(),
+            ..self.clone()
         }
     }
 }
