@@ -16,8 +16,19 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 9] = [
-    "abuffer", "ceiling", "grid", "hbao", "ldm", "nearest", "raster", "rsm", "vertex",
+const ROOTS: [&str; 12] = [
+    "abuffer",
+    "abuffer_samples",
+    "ceiling",
+    "grid",
+    "hbao",
+    "ldm",
+    "multisample",
+    "nearest",
+    "raster",
+    "raster_samples",
+    "rsm",
+    "vertex",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.

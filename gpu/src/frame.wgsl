@@ -29,15 +29,6 @@ const WORKGROUP: u32 = 64u;
 // Side of the guard rectangle, pixels.
 const GUARD: i32 = 4096;
 
-// Most samples of a pixel.
-const SAMPLES_MAX: u32 = 8u;
-
-// Where a sample lies within its pixel, in sub-pixels.
-fn sample_place(s: u32) -> vec2<i32> {
-    let place = frame.places[s / 4u][s % 4u];
-    return vec2(i32(place & 0xffffu), i32(place >> 16u));
-}
-
 fn band_pixels() -> u32 {
     return frame.width * frame.rows;
 }

@@ -66,6 +66,15 @@ fn depths(s: Setup) -> vec3<u32> {
     return vec3<u32>(vec3(s.a.z, s.b.z, s.c.z));
 }
 
+// Most samples of a pixel.
+const SAMPLES_MAX: u32 = 8u;
+
+// Where a sample lies within its pixel, in sub-pixels.
+fn sample_place(s: u32) -> vec2<i32> {
+    let place = frame.places[s / 4u][s % 4u];
+    return vec2(i32(place & 0xffffu), i32(place >> 16u));
+}
+
 // A sample of a pixel of the target, in sub-pixels.
 fn sample_at(x: u32, y: u32, s: u32) -> vec2<i32> {
     return vec2<i32>(vec2(x, y) << vec2(frame.bits)) + sample_place(s);

@@ -1,5 +1,7 @@
 //! Laws of the A-buffer.
 
+#[path = "abuffer/multisample.rs"]
+mod multisample;
 #[path = "abuffer/nearest.rs"]
 mod nearest;
 #[path = "abuffer/order.rs"]

@@ -13,7 +13,7 @@ use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
 use crate::registry::Chain;
-use crate::replay::gpu::{Adapter, From, GpuLeg};
+use crate::replay::gpu::{Adapter, Drawn, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
 use crate::replay::rows::Rows;
@@ -94,8 +94,8 @@ impl Ground {
     /// shipped kernels, or it could die of something else.
     pub(super) fn leg(&self, mutant: &Mutant, adapter: &mut Adapter, path: Path) -> Tried {
         let leg = adapter.label(path);
-        if let Some(reason) = cannot_run(adapter, path) {
-            return Ok((Cell::blank(mutant, leg, reason.into()), None));
+        if let Some(reason) = self.cannot_run(adapter, path) {
+            return Ok((Cell::blank(mutant, leg, reason), None));
         }
         let native = path == Path::Native;
         let sources = mutant.sources(native, || self.twice_the_bound());
@@ -222,6 +222,23 @@ impl Ground {
         Ok(rows.rows)
     }
 
+    /// Why a path has nothing to say of a mutant on this scene.
+    fn cannot_run(&self, adapter: &Adapter, path: Path) -> Option<String> {
+        let samples = self.loaded.scene.samples;
+        match path {
+            Path::Native if adapter.native.is_none() => Some("no 64-bit integers".to_owned()),
+            Path::Fragment if adapter.grid == Grid::Unknown => {
+                Some("the sub-pixel grid is unknown".to_owned())
+            }
+            _ => match adapter.samples(path, samples) {
+                Ok(Drawn::With(found)) if found == samples => None,
+                Ok(Drawn::With(_)) => Some("its samples have places of their own".to_owned()),
+                Ok(Drawn::Not(reason)) => Some(reason),
+                Err(error) => Some(error.to_string()),
+            },
+        }
+    }
+
     /// The least share of a colour by which every colour of a pixel with layers differs
     /// by twice its own bound.
     fn twice_the_bound(&self) -> f64 {
@@ -247,14 +264,6 @@ fn kernels(adapter: &mut Adapter, path: Path) -> &mut Kernels {
         .as_mut()
         .filter(|_| path == Path::Native)
         .unwrap_or(kernels)
-}
-
-fn cannot_run(adapter: &Adapter, path: Path) -> Option<&'static str> {
-    match path {
-        Path::Native if adapter.native.is_none() => Some("no 64-bit integers"),
-        Path::Fragment if adapter.grid == Grid::Unknown => Some("the sub-pixel grid is unknown"),
-        _ => None,
-    }
 }
 
 /// Whether the vertex stages' kernels are not those that ship.

@@ -12,10 +12,11 @@ use crate::corpus::{self, Entry};
 use crate::replay::gpu::PathName;
 use crate::text::hex;
 
-const TABLES: [(&str, &str); 6] = [
+const TABLES: [(&str, &str); 7] = [
     ("vertex.toml", include_str!("vertex.toml")),
     ("raster.toml", include_str!("raster.toml")),
     ("abuffer.toml", include_str!("abuffer.toml")),
+    ("multisample.toml", include_str!("multisample.toml")),
     ("grid.toml", include_str!("grid.toml")),
     ("rsm.toml", include_str!("rsm.toml")),
     ("ldm.toml", include_str!("ldm.toml")),
