@@ -40,7 +40,11 @@ fn quad() -> impl Strategy<Value = (Size, u32, [[i32; 3]; 4])> {
                 let place = || coordinate(16, bits);
                 (place(), place(), depth()).prop_map(|(x, y, z)| [x, y, z])
             };
-            (Just(size), Just(bits), [corner(), corner(), corner(), corner()])
+            (
+                Just(size),
+                Just(bits),
+                [corner(), corner(), corner(), corner()],
+            )
         })
         .prop_filter("on both sides", |(_, _, [a, b, c, d])| {
             let [a, b, c, d] = [a, b, c, d].map(|p| flat(*p));

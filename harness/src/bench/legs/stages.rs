@@ -144,7 +144,10 @@ fn prepared<'s>(
             continue;
         }
         if scene.samples.count() > 1 {
-            refuse(&label, "frames of one sample a pixel are timed alone".to_owned());
+            refuse(
+                &label,
+                "frames of one sample a pixel are timed alone".to_owned(),
+            );
             continue;
         }
         let work = Work::new(scene, adapter.bits(path));

@@ -59,17 +59,19 @@ impl Adapter {
     /// How many samples a pixel the hardware draws with, and where they lie.
     pub fn samples_in_words(&self) -> String {
         let several = Samples::COUNTS.iter().filter(|count| **count > 1);
-        let words = several.filter_map(|count| Samples::standard(*count)).map(|standard| {
-            let count = standard.count();
-            match self.samples(Path::Fragment, standard) {
-                Ok(Drawn::With(found)) if found == standard => {
-                    format!("{count} in standard places")
+        let words = several
+            .filter_map(|count| Samples::standard(*count))
+            .map(|standard| {
+                let count = standard.count();
+                match self.samples(Path::Fragment, standard) {
+                    Ok(Drawn::With(found)) if found == standard => {
+                        format!("{count} in standard places")
+                    }
+                    Ok(Drawn::With(found)) => format!("{count} at {:?}", found.positions()),
+                    Ok(Drawn::Not(reason)) => format!("not {count}: {reason}"),
+                    Err(error) => format!("not {count}: {error}"),
                 }
-                Ok(Drawn::With(found)) => format!("{count} at {:?}", found.positions()),
-                Ok(Drawn::Not(reason)) => format!("not {count}: {reason}"),
-                Err(error) => format!("not {count}: {error}"),
-            }
-        });
+            });
         format!("samples: {}", words.collect::<Vec<_>>().join("; "))
     }
 
