@@ -46,11 +46,14 @@ impl<'a> Task<'a> {
     }
 }
 
+/// The spec's results, if a lane works with them.
+type Held = Weak<Observed<Spec, SpecRun>>;
+
 /// The spec's results, as long as a lane works with them: they are large.
 #[derive(Default)]
 pub(super) struct Shared {
     /// By sub-pixel bits and samples.
-    specs: Mutex<BTreeMap<(u32, Samples), Weak<Observed<Spec, SpecRun>>>>,
+    specs: Mutex<BTreeMap<(u32, Samples), Held>>,
     /// Of a scene with a grid.
     grid: Mutex<Weak<Observed<Spec, GridRun>>>,
     /// Of a scene with indirect light.

@@ -37,8 +37,8 @@ impl Adapter {
         if let Some(reason) = self.cannot_draw(count) {
             return Ok(Drawn::Not(reason));
         }
-        let mut known = self.calibrated.0.lock();
-        let known = known.as_mut().map_or_else(PoisonError::get_mut, |k| k);
+        let known = self.calibrated.0.lock();
+        let mut known = known.unwrap_or_else(PoisonError::into_inner);
         let found = match known.get(&count) {
             Some(found) => *found,
             None => {
