@@ -152,6 +152,8 @@ fn build(small: Small) -> Vec<Result<Abuffer, GpuError>> {
             opaque: false,
             lists: true,
             depth_test: false,
+            order: triptych_spec::abuffer::Order::Centroid,
+            once: false,
             background: [0.0; 3],
         };
         let sound = |_, _: &_| Some(8);

@@ -10,8 +10,10 @@
 //! | `vertex::clip` | neighbours share clip points; what is visible stays; nothing is left of what has no place |
 //! | `raster` | brute force; permutation; translation; refinement; winding |
 //! | `raster::partition` | splits, fans and grids cover each sample exactly once, parts give the whole's picture; closed meshes alternate |
+//! | `raster::multisample` | masks are what samples cover by themselves; full pixels; neighbours; quarters of pixels |
 //! | `abuffer` | lists, capacity, conservation, permutation, order of insertion |
 //! | `abuffer::resolve` | closed forms and bounds of blending; powers of two |
+//! | `abuffer::multisample` | surfaces, depth test and true depth of each sample; by pixel as by sample; means |
 //! | `abuffer::rivals` | peels find the nearest layers; orders that do not matter; closed forms and bounds of what else is made of layers |
 //! | `tiles` | bins hold what is covered; lists and pictures are those of `abuffer`; nothing between entries |
 //! | `tiles::adapters` | however few triangles a dispatch draws |

@@ -16,10 +16,28 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 16] = [
-    "abuffer", "alpha", "ceiling", "defocus", "density", "dual", "grid", "hbao", "ldm", "nearest",
-    "peel", "raster", "rsm", "tiles", "vertex", "weighted",
+const ROOTS: [&str; 17] = [
+    "abuffer",
+    "alpha",
+    "ceiling",
+    "defocus",
+    "density",
+    "dual",
+    "grid",
+    "hbao",
+    "ldm",
+    "multisample",
+    "nearest",
+    "peel",
+    "raster",
+    "rsm",
+    "tiles",
+    "vertex",
+    "weighted",
 ];
+
+/// The files that have entry points of others, with other imports.
+const VARIANTS: [&str; 2] = ["abuffer_samples", "raster_samples"];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
 const STORAGE_BUFFERS: usize = 8;
@@ -44,6 +62,7 @@ fn programs() -> Vec<Root> {
     };
     let all = ROOTS
         .iter()
+        .chain(&VARIANTS)
         .flat_map(|root| [(*root, false), (*root, true)]);
     all.map(link).collect()
 }

@@ -61,6 +61,8 @@ fn wrong(
         opaque: plan.opaque,
         lists: plan.lists,
         depth_test: plan.depth_test,
+        order: triptych_spec::abuffer::Order::Centroid,
+        once: false,
         background: scene.background,
     };
     let timed = Timed::new(&rasterizer, options, |prim| run.is_opaque(prim));

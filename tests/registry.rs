@@ -237,6 +237,8 @@ fn names_are_unique() {
 #[test]
 fn passes_are_stages() {
     let scene = Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: Size {
             width: 1,
             height: 1,

@@ -2,13 +2,14 @@
 
 mod attempt;
 mod buffers;
+mod multisample;
 pub mod rivals;
 mod stages;
 mod timed;
 
 use std::time::Duration;
 
-use triptych_spec::abuffer::{Lists, Opaque};
+use triptych_spec::abuffer::{Lists, Opaque, Order};
 
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -44,6 +45,10 @@ pub struct Options<'a> {
     pub lists: bool,
     /// Drop transparent fragments at or behind an opaque surface.
     pub depth_test: bool,
+    /// In which order layers lie at each sample, where pixels have several.
+    pub order: Order,
+    /// Shade pixels once whose samples are all alike.
+    pub once: bool,
     /// Linear background colour.
     pub background: [f32; 3],
 }
@@ -61,7 +66,7 @@ pub struct BandResult {
 /// The A-buffer of a whole target.
 #[derive(Default)]
 pub struct Abuffer {
-    /// The nearest opaque surface of each pixel.
+    /// The nearest opaque surface at each sample.
     pub opaque: Opaque,
     /// The bands, from top to bottom.
     pub bands: Vec<BandResult>,
@@ -132,7 +137,7 @@ pub fn run(
 /// What to attempt: given lists take exactly their room, others are yet to be counted.
 fn attempts(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Attempts {
     let Rasterizer { gpu, size, .. } = *rasterizer;
-    let need = buffers::need(gpu);
+    let need = buffers::need_of(gpu, rasterizer.samples.count());
     if let Some(lists) = options.given.and_then(|given| given.lists) {
         let rows = buffers::nodes_of_rows(lists, size.width);
         return Attempts::new(gpu, size, need, None).with_rows(rows);

@@ -5,6 +5,7 @@
 // nothing orders a node's payload before the exchange that publishes it.
 
 //#import counter
+//#import drawn
 //#import place
 //#import walk
 //#import relink
@@ -26,22 +27,53 @@ struct Node {
 @group(0) @binding(9) var<storage, read_write> colours: array<vec4<f32>>;
 @group(0) @binding(10) var<storage, read_write> picture: array<vec4<f32>>;
 
-// Stage opaque, first pass: the smallest key.
+// The key of a fragment at one of its samples.
+fn key_of(fragment: Fragment, sample: u32) -> u32 {
+    if frame.samples == 1u {
+        return fragment.key;
+    }
+    return key_at(fragment.prim, fragment.pixel, sample, fragment.key);
+}
+
+// Stage opaque, first pass: the smallest key at each sample.
 fn nearest(fragment: Fragment) {
-    atomicMin(&opaque_key[fragment.pixel], fragment.key);
+    for (var s = 0u; s < frame.samples; s += 1u) {
+        if (fragment.mask >> s & 1u) != 0u {
+            atomicMin(&opaque_key[frame.samples * fragment.pixel + s], key_of(fragment, s));
+        }
+    }
 }
 
 // Second pass: the smallest triangle with that key.
 fn first(fragment: Fragment) {
-    if fragment.key == atomicLoad(&opaque_key[fragment.pixel]) {
-        atomicMin(&opaque_prim[fragment.pixel], fragment.prim);
+    for (var s = 0u; s < frame.samples; s += 1u) {
+        let at = frame.samples * fragment.pixel + s;
+        if (fragment.mask >> s & 1u) != 0u && key_of(fragment, s) == atomicLoad(&opaque_key[at]) {
+            atomicMin(&opaque_prim[at], fragment.prim);
+        }
     }
+}
+
+// The samples of a fragment in front of the opaque surfaces there.
+fn visible(fragment: Fragment) -> u32 {
+    if frame.depth_test == 0u {
+        return fragment.mask;
+    }
+    var mask = fragment.mask;
+    for (var s = 0u; s < frame.samples; s += 1u) {
+        let end = atomicLoad(&opaque_key[frame.samples * fragment.pixel + s]);
+        if end != NOTHING && key_of(fragment, s) >= end {
+            mask &= ~(1u << s);
+        }
+    }
+    return mask;
 }
 
 // Stage build: section 3's three steps. A fragment without an address leaves head
 // and nodes alone, so overflow loses fragments, never a list.
 fn insert(fragment: Fragment) {
-    if frame.depth_test != 0u && fragment.key >= atomicLoad(&opaque_key[fragment.pixel]) {
+    let mask = visible(fragment);
+    if mask == 0u {
         return;
     }
     let address = claim();
@@ -49,7 +81,7 @@ fn insert(fragment: Fragment) {
         return;
     }
     let next = atomicExchange(&heads[fragment.pixel], address);
-    nodes[address] = Node(fragment.key, next, fragment.prim, fragment.mask);
+    nodes[address] = Node(fragment.key, next, fragment.prim, mask);
     colours[address] = faces[fragment.prim];
 }
 
@@ -87,21 +119,18 @@ fn build(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 @fragment
-fn opaque_nearest_fragment(placed: Placed) {
-    let pixel = vec2<u32>(placed.position.xy);
-    nearest(fragment_at(placed.prim, pixel.x, pixel.y));
+fn opaque_nearest_fragment(drawn: Drawn) {
+    nearest(fragment_of(drawn));
 }
 
 @fragment
-fn opaque_first_fragment(placed: Placed) {
-    let pixel = vec2<u32>(placed.position.xy);
-    first(fragment_at(placed.prim, pixel.x, pixel.y));
+fn opaque_first_fragment(drawn: Drawn) {
+    first(fragment_of(drawn));
 }
 
 @fragment
-fn build_fragment(placed: Placed) {
-    let pixel = vec2<u32>(placed.position.xy);
-    insert(fragment_at(placed.prim, pixel.x, pixel.y));
+fn build_fragment(drawn: Drawn) {
+    insert(fragment_of(drawn));
 }
 
 fn next_of(at: u32) -> u32 {

@@ -4,15 +4,19 @@ mod buffers;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use triptych_spec::raster::Samples;
+
 use crate::error::GpuError;
+use crate::kernel::TARGET_FORMAT;
 
 /// What a device has beyond WebGPU's defaults, if its adapter does: 64-bit integers for
 /// path `native`, with atomics of these and blending of 32-bit floats for rivals of lists,
-/// timestamps for `triptych bench`.
+/// timestamps for `triptych bench`, targets of 2 and 8 samples a pixel.
 const FEATURES: wgpu::Features = wgpu::Features::SHADER_INT64
     .union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX)
     .union(wgpu::Features::FLOAT32_BLENDABLE)
-    .union(wgpu::Features::TIMESTAMP_QUERY);
+    .union(wgpu::Features::TIMESTAMP_QUERY)
+    .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
 
 /// Which adapters a run is about.
 pub fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
@@ -48,6 +52,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The largest buffer that a kernel may see, in bytes.
     binding_limit: u64,
+    /// How many samples a pixel of a target may have.
+    samples: Vec<u32>,
     /// Bytes in all that are as good as there, for tests.
     memory_limit: Option<u64>,
     /// The first thing that went wrong behind our back.
@@ -95,6 +101,7 @@ impl Gpu {
             name,
             info,
             binding_limit: binding_limit(&device),
+            samples: sample_counts(adapter, &device),
             device,
             queue,
             memory_limit: None,
@@ -127,6 +134,11 @@ impl Gpu {
         self.device
             .features()
             .contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Whether targets of the hardware's rasteriser may have so many samples a pixel.
+    pub fn has_samples(&self, count: u32) -> bool {
+        self.samples.contains(&count)
     }
 
     /// The largest buffer that a kernel may see, in bytes.
@@ -190,6 +202,17 @@ impl Gpu {
             reason: one_line(error),
         })
     }
+}
+
+/// WebGPU has 1 and 4 everywhere; others are the adapter's own.
+fn sample_counts(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Vec<u32> {
+    let own = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+    let flags = adapter.get_texture_format_features(TARGET_FORMAT).flags;
+    let has = |count: &u32| match count {
+        1 | 4 => true,
+        _ => device.features().contains(own) && flags.sample_count_supported(*count),
+    };
+    Samples::COUNTS.into_iter().filter(has).collect()
 }
 
 fn binding_limit(device: &wgpu::Device) -> u64 {

@@ -2,8 +2,11 @@
 //! holds the two layouts together.
 
 use bytemuck::{Pod, Zeroable};
+use triptych_spec::raster::{SAMPLES_MAX, Samples};
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::guard_origin;
+
+const _: () = assert!(SAMPLES_MAX == 8, "as `Frame::places` has it");
 
 /// Invocations per workgroup, one dimension.
 pub const WORKGROUP: u32 = 64;
@@ -38,6 +41,16 @@ pub struct Frame {
     pub depth_test: u32,
     /// Linear background colour.
     pub background: [f32; 4],
+    /// Samples of a pixel.
+    pub samples: u32,
+    /// Whose turn it is, in kernels for one sample.
+    pub sample: u32,
+    /// 1: layers lie by their keys at each sample; 0: by those of the list.
+    pub order: u32,
+    /// 1: pixels whose samples are all alike are shaded once.
+    pub once: u32,
+    /// Right plus down times 2^16 of each sample, in sub-pixels.
+    pub places: [u32; 8],
 }
 
 /// A run of rows that is rendered at once.
@@ -80,8 +93,18 @@ impl Band {
 }
 
 impl Frame {
-    /// A band of a target, without work.
+    /// A band of a target with one sample a pixel, without work.
     pub fn new(size: Size, bits: u32, band: Band) -> Self {
+        Self::with_samples(size, bits, Samples::ONE, band)
+    }
+
+    /// The same with these samples in every pixel.
+    pub fn with_samples(size: Size, bits: u32, samples: Samples, band: Band) -> Self {
+        let mut places = [0; 8];
+        for (word, [right, down]) in places.iter_mut().zip(samples.offsets(bits)) {
+            let packed = right | down << 16;
+            *word = u32::try_from(packed).expect("less than a pixel, which has 2^8 sub-pixels");
+        }
         Self {
             width: size.width,
             height: size.height,
@@ -90,6 +113,8 @@ impl Frame {
             rows: band.rows,
             guard_x: guard_origin(size.width),
             guard_y: guard_origin(size.height),
+            samples: samples.count(),
+            places,
             ..Self::default()
         }
     }

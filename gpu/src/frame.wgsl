@@ -15,6 +15,11 @@ struct Frame {
     guard_y: i32,
     depth_test: u32,    // 0: fragments behind opaque surfaces are kept
     background: vec4<f32>,
+    samples: u32,       // of a pixel
+    sample: u32,        // whose turn it is, in kernels for one sample
+    order: u32,         // 1: layers lie by their keys at each sample, 0: by those of the list
+    once: u32,          // 1: pixels whose samples are all alike are shaded once
+    places: array<vec4<u32>, 2>,    // right + down * 2^16 of each sample, in sub-pixels
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -56,8 +56,9 @@ pub enum Fault {
     ColourWritten,
 }
 
-/// By file, vertex entry point (none of a compute kernel's) and entry point.
-type Built = BTreeMap<(String, [String; 2]), Arc<Kernel>>;
+/// By file, vertex entry point (none of a compute kernel's), entry point, and samples of a pixel
+/// of its target (none of a compute kernel's).
+type Built = BTreeMap<(String, [String; 2], u32), Arc<Kernel>>;
 
 /// The kernels of one device, compiled when first asked for.
 pub struct Kernels {
@@ -119,7 +120,7 @@ impl Kernels {
         }
         programs.retain(|file, _| same[file]);
         let mut kernels = self.kernels().clone();
-        kernels.retain(|(file, _), _| same[file]);
+        kernels.retain(|(file, ..), _| same[file]);
         Ok(Self {
             sources,
             checks: self.checks,
@@ -154,7 +155,7 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn compute(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, ["", entry], |ours, module| {
+        self.get(gpu, file, (["", entry], 0), |ours, module| {
             let pipeline = gpu
                 .device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -177,7 +178,8 @@ impl Kernels {
         })
     }
 
-    /// The fragment kernel `entry` of `file`, fed by the vertex entry point `place`.
+    /// The fragment kernel `entry` of `file`, fed by the vertex entry point `place`, over a
+    /// target with so many samples a pixel.
     ///
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
@@ -185,10 +187,10 @@ impl Kernels {
         &self,
         gpu: &Gpu,
         file: &str,
-        place: &str,
-        entry: &str,
+        [place, entry]: [&str; 2],
+        samples: u32,
     ) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, [place, entry], |ours, module| {
+        self.get(gpu, file, ([place, entry], samples), |ours, module| {
             let returns = self.fault == Some(Fault::ColourWritten) && module.program.returns(entry);
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
@@ -211,7 +213,10 @@ impl Kernels {
                     },
                     primitive: wgpu::PrimitiveState::default(),
                     depth_stencil: None,
-                    multisample: wgpu::MultisampleState::default(),
+                    multisample: wgpu::MultisampleState {
+                        count: samples,
+                        ..Default::default()
+                    },
                     fragment: Some(wgpu::FragmentState {
                         module: &module.shader,
                         entry_point: Some(entry),
@@ -233,11 +238,11 @@ impl Kernels {
         &self,
         gpu: &Gpu,
         file: &str,
-        [place, entry]: [&str; 2],
+        ([place, entry], samples): ([&str; 2], u32),
         make: impl FnOnce(&Module, &Module) -> Result<Kernel, GpuError>,
     ) -> Result<Arc<Kernel>, GpuError> {
         let mut kernels = self.kernels();
-        let key = (file.to_owned(), [place, entry].map(str::to_owned));
+        let key = (file.to_owned(), [place, entry].map(str::to_owned), samples);
         if let Some(kernel) = kernels.get(&key) {
             return Ok(kernel.clone());
         }

@@ -8,6 +8,7 @@ mod work;
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
+use triptych_spec::raster::Samples;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::{Position, Primitives, SUBPIXEL_BITS};
 
@@ -21,7 +22,7 @@ pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub(crate) use ready::Ready;
 pub use work::Work;
-use work::sampled_rows;
+use work::{heights, sampled_rows};
 
 /// Who decides coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,6 +60,8 @@ pub struct Rasterizer<'g> {
     /// Size of the target.
     pub size: Size,
     bits: u32,
+    /// Where the samples of every pixel lie.
+    pub samples: Samples,
     corners: wgpu::Buffer,
     /// Clip space, where the driver is to divide, clip and snap.
     handed: Option<wgpu::Buffer>,
@@ -89,19 +92,29 @@ impl<'g> Rasterizer<'g> {
             .iter()
             .map(|p| p.map(|corner| primitives.snapped[corner as usize]))
             .collect();
-        let bits = primitives.bits;
+        let (bits, samples) = (primitives.bits, primitives.samples);
+        // Only the fragment path draws to it.
+        let drawn = match path {
+            Path::Fragment => samples.count(),
+            Path::Compute | Path::Native => 1,
+        };
+        let height = heights(samples, bits);
         Ok(Self {
             gpu,
             kernels,
             path,
             size: primitives.size,
             bits,
-            rows: corners.iter().map(|c| sampled_rows(c, bits)).collect(),
+            samples,
+            rows: corners
+                .iter()
+                .map(|c| sampled_rows(c, bits, height))
+                .collect(),
             corners: gpu.upload("corners", &corners)?,
             handed: None,
             faces: gpu.upload("faces", faces)?,
             colours: faces.to_vec(),
-            target: target(gpu, primitives.size)?,
+            target: target(gpu, primitives.size, drawn)?,
             passes: RefCell::default(),
         })
     }
@@ -121,6 +134,7 @@ impl<'g> Rasterizer<'g> {
         let nothing = Primitives {
             size,
             bits: SUBPIXEL_BITS,
+            samples: Samples::ONE,
             snapped: vec![[0; 3]],
             prims: vec![[0; 3]; triangles.len()],
             source: Vec::new(),
@@ -200,7 +214,7 @@ impl<'g> Rasterizer<'g> {
 
     /// A frame for a band of this target.
     pub fn frame(&self, band: Band) -> Frame {
-        Frame::new(self.size, self.bits, band)
+        Frame::with_samples(self.size, self.bits, self.samples, band)
     }
 }
 
@@ -225,7 +239,7 @@ pub fn per_pixel(
     Ok(start.elapsed())
 }
 
-fn target(gpu: &Gpu, size: Size) -> Result<wgpu::TextureView, GpuError> {
+fn target(gpu: &Gpu, size: Size, samples: u32) -> Result<wgpu::TextureView, GpuError> {
     let descriptor = wgpu::TextureDescriptor {
         label: Some("target"),
         size: wgpu::Extent3d {
@@ -234,13 +248,13 @@ fn target(gpu: &Gpu, size: Size) -> Result<wgpu::TextureView, GpuError> {
             depth_or_array_layers: 1,
         },
         mip_level_count: 1,
-        sample_count: 1,
+        sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
         format: TARGET_FORMAT,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
         view_formats: &[],
     };
-    let bytes = u64::from(size.width) * u64::from(size.height);
+    let bytes = u64::from(size.width) * u64::from(size.height) * u64::from(samples);
     let texture = gpu.make("target", bytes, |device| device.create_texture(&descriptor))?;
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }

@@ -1,10 +1,11 @@
-// Raster stage: every covered pixel of every triangle, as a stream, on two paths.
+// Raster stage: every pixel with a covered sample of every triangle, as a stream, on two paths.
 //
 // Compute: one invocation walks one row of one triangle. Fragment: the hardware
 // rasterises the same snapped triangles, the shader evaluates only the key.
 // Twin: spec/src/raster.rs.
 
 //#import counter
+//#import drawn
 //#import place
 //#import walk
 
@@ -30,7 +31,6 @@ fn cover(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 @fragment
-fn cover_fragment(placed: Placed) {
-    let pixel = vec2<u32>(placed.position.xy);
-    append(fragment_at(placed.prim, pixel.x, pixel.y));
+fn cover_fragment(drawn: Drawn) {
+    append(fragment_of(drawn));
 }

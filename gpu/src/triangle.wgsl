@@ -14,12 +14,12 @@
 // Colour and opacity of each triangle.
 @group(0) @binding(3) var<storage, read> faces: array<vec4<f32>>;
 
-// One covered pixel of one triangle.
+// One pixel that a triangle covers a sample of.
 struct Fragment {
     pixel: u32,     // within the band, row-major
     prim: u32,
-    key: u32,
-    mask: u32,
+    key: u32,       // at the lowest covered sample
+    mask: u32,      // bit s: sample s is covered
 }
 
 struct Setup {
@@ -66,21 +66,53 @@ fn depths(s: Setup) -> vec3<u32> {
     return vec3<u32>(vec3(s.a.z, s.b.z, s.c.z));
 }
 
-fn sample_at(pixel: u32) -> i32 {
-    return i32(pixel << frame.bits) + i32(1u << (frame.bits - 1u));
+// Most samples of a pixel.
+const SAMPLES_MAX: u32 = 8u;
+
+// Where a sample lies within its pixel, in sub-pixels.
+fn sample_place(s: u32) -> vec2<i32> {
+    let place = frame.places[s / 4u][s % 4u];
+    return vec2(i32(place & 0xffffu), i32(place >> 16u));
 }
 
-// The fragment of `prim` at a pixel that the hardware says is covered.
-fn fragment_at(prim: u32, x: u32, y: u32) -> Fragment {
+// A sample of a pixel of the target, in sub-pixels.
+fn sample_at(x: u32, y: u32, s: u32) -> vec2<i32> {
+    return vec2<i32>(vec2(x, y) << vec2(frame.bits)) + sample_place(s);
+}
+
+// The key of `prim` at a sample of a pixel of the band; `otherwise` where it does not cover
+// that, which only a kernel with a defect says it does.
+fn key_at(prim: u32, pixel: u32, sample: u32, otherwise: u32) -> u32 {
     let s = prepare(prim);
-    let point = vec2(sample_at(x), sample_at(y));
+    let x = pixel % frame.width;
+    let point = sample_at(x, frame.first_row + pixel / frame.width, sample);
+    let ea = edge(s.b, s.c, point);
+    let eb = edge(s.c, s.a, point);
+    let ec = edge(s.a, s.b, point);
+    if s.empty || wide_negative(wide_sub(ea, wide(least(s.b, s.c))))
+        || wide_negative(wide_sub(eb, wide(least(s.c, s.a))))
+        || wide_negative(wide_sub(ec, wide(least(s.a, s.b)))) {
+        return otherwise;
+    }
+    return depth_key(depths(s), s.area, ea, eb, ec);
+}
+
+// The fragment of `prim` at a pixel of which the hardware says that these samples are covered.
+fn fragment_with(prim: u32, x: u32, y: u32, mask: u32) -> Fragment {
+    let s = prepare(prim);
+    let point = sample_at(x, y, min(firstTrailingBit(mask), SAMPLES_MAX - 1u));
     let ea = edge(s.b, s.c, point);
     let eb = edge(s.c, s.a, point);
     let ec = edge(s.a, s.b, point);
     let pixel = (y - frame.first_row) * frame.width + x;
     // Outside the triangle a key means nothing; the comparison reports coverage.
     if s.empty || wide_negative(ea) || wide_negative(eb) || wide_negative(ec) {
-        return Fragment(pixel, prim, u32(s.a.z), 1u);
+        return Fragment(pixel, prim, u32(s.a.z), mask);
     }
-    return Fragment(pixel, prim, depth_key(depths(s), s.area, ea, eb, ec), 1u);
+    return Fragment(pixel, prim, depth_key(depths(s), s.area, ea, eb, ec), mask);
+}
+
+// The same of a pixel with one sample.
+fn fragment_at(prim: u32, x: u32, y: u32) -> Fragment {
+    return fragment_with(prim, x, y, 1u);
 }

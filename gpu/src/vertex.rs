@@ -90,6 +90,7 @@ fn in_batches(
         Given::Polygons(_) => {}
     }
     let mut primitives = Primitives {
+        samples: scene.samples,
         size: scene.size,
         bits: stages.frame.bits,
         snapped: Vec::new(),

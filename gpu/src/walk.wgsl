@@ -1,4 +1,4 @@
-// Compute path: a walk over the covered pixels of one row of one triangle.
+// Compute path: a walk over the pixels of one row of which one triangle covers a sample.
 //
 //     var walk = start(item);
 //     while advance(&walk) { … walk.fragment … }
@@ -10,7 +10,7 @@ struct Walk {
     x: u32,         // next column to look at
     end: u32,       // one past the last
     pixel: u32,     // of column 0, within the band
-    ea: Wide,       // edge values at column x, less the least of a covered sample
+    ea: Wide,       // edge values at sample 0 of column x, less the least of a covered sample
     eb: Wide,
     ec: Wide,
     da: Wide,       // their change per column
@@ -35,12 +35,15 @@ fn find(item: u32) -> u32 {
     return low;
 }
 
-// First row of the band whose samples lie at or below the triangle's top.
+// First row of the band of which a sample lies at or below the triangle's top.
 fn first_row(s: Setup) -> u32 {
     let top = min(s.a.y, min(s.b.y, s.c.y));
-    let half = i32(1u << (frame.bits - 1u));
-    // ceil((top - half) / 2^bits); the shift of a negative number rounds down.
-    let row = -((half - top) >> frame.bits);
+    var lowest = sample_place(0u).y;
+    for (var i = 1u; i < frame.samples; i += 1u) {
+        lowest = max(lowest, sample_place(i).y);
+    }
+    // ceil((top - lowest) / 2^bits); the shift of a negative number rounds down.
+    let row = -((lowest - top) >> frame.bits);
     return u32(clamp(row, i32(frame.first_row), i32(frame.first_row + frame.rows)));
 }
 
@@ -49,12 +52,11 @@ fn start(item: u32) -> Walk {
     let prim = work[at].x;
     let s = prepare(prim);
     let y = first_row(s) + item - work[at].y;
-    let origin = vec2(sample_at(0u), sample_at(y));
+    let origin = sample_at(0u, y, 0u);
     var walk: Walk;
     walk.setup = s;
     walk.pixel = (y - frame.first_row) * frame.width;
     walk.fragment.prim = prim;
-    walk.fragment.mask = 1u;
     walk.da = step_of(s.b, s.c);
     walk.db = step_of(s.c, s.a);
     walk.dc = step_of(s.a, s.b);
@@ -62,9 +64,9 @@ fn start(item: u32) -> Walk {
     let eb = wide_sub(edge(s.c, s.a, origin), wide(least(s.c, s.a)));
     let ec = wide_sub(edge(s.a, s.b, origin), wide(least(s.a, s.b)));
     var span = vec2(0.0, f32(frame.width));
-    span = narrow(span, ea, s.c.y - s.b.y);
-    span = narrow(span, eb, s.a.y - s.c.y);
-    span = narrow(span, ec, s.b.y - s.a.y);
+    span = narrow(span, widened(ea, s.b, s.c), s.c.y - s.b.y);
+    span = narrow(span, widened(eb, s.c, s.a), s.a.y - s.c.y);
+    span = narrow(span, widened(ec, s.a, s.b), s.b.y - s.a.y);
     walk.x = u32(clamp(span.x, 0.0, f32(frame.width)));
     walk.end = select(u32(clamp(span.y, 0.0, f32(frame.width))), 0u, s.empty);
     walk.ea = wide_add(ea, wide_scale(walk.da, walk.x));
@@ -76,6 +78,35 @@ fn start(item: u32) -> Walk {
 // Change of an edge function from one column to the next.
 fn step_of(a: vec3<i32>, b: vec3<i32>) -> Wide {
     return wide_shift(wide(a.y - b.y), frame.bits);
+}
+
+// Change of an edge function from sample 0 of a pixel to another. Edges are below 2^20 and
+// samples less than 2^8 sub-pixels apart, so it is below 2^29.
+fn shift_of(a: vec3<i32>, b: vec3<i32>, s: u32) -> i32 {
+    let by = sample_place(s) - sample_place(0u);
+    return (b.x - a.x) * by.y - (b.y - a.y) * by.x;
+}
+
+// The value at whichever sample of the pixel has the largest: a row's span must have every
+// pixel of which any sample is covered.
+fn widened(value: Wide, a: vec3<i32>, b: vec3<i32>) -> Wide {
+    var most = 0;
+    for (var i = 1u; i < frame.samples; i += 1u) {
+        most = max(most, shift_of(a, b, i));
+    }
+    return wide_add(value, wide(most));
+}
+
+// The samples that are covered at a pixel with these values, less the least, at sample 0.
+fn mask_of(s: Setup, ea: Wide, eb: Wide, ec: Wide) -> u32 {
+    var mask = u32(!(wide_negative(ea) || wide_negative(eb) || wide_negative(ec)));
+    for (var i = 1u; i < frame.samples; i += 1u) {
+        let out = wide_negative(wide_add(ea, wide(shift_of(s.b, s.c, i))))
+            || wide_negative(wide_add(eb, wide(shift_of(s.c, s.a, i))))
+            || wide_negative(wide_add(ec, wide(shift_of(s.a, s.b, i))));
+        mask |= select(1u << i, 0u, out);
+    }
+    return mask;
 }
 
 // Cuts a span of columns to where value - x * fall * 2^bits may be >= 0. It only
@@ -116,15 +147,18 @@ fn advance(walk: ptr<function, Walk>) -> bool {
         (*walk).ea = wide_add(ea, (*walk).da);
         (*walk).eb = wide_add(eb, (*walk).db);
         (*walk).ec = wide_add(ec, (*walk).dc);
-        if !(wide_negative(ea) || wide_negative(eb) || wide_negative(ec)) {
-            let s = (*walk).setup;
+        let s = (*walk).setup;
+        let mask = mask_of(s, ea, eb, ec);
+        if mask != 0u {
+            let lowest = firstTrailingBit(mask);
+            (*walk).fragment.mask = mask;
             (*walk).fragment.pixel = (*walk).pixel + x;
             (*walk).fragment.key = depth_key(
                 depths(s),
                 s.area,
-                wide_add(ea, wide(least(s.b, s.c))),
-                wide_add(eb, wide(least(s.c, s.a))),
-                wide_add(ec, wide(least(s.a, s.b))),
+                wide_add(ea, wide(least(s.b, s.c) + shift_of(s.b, s.c, lowest))),
+                wide_add(eb, wide(least(s.c, s.a) + shift_of(s.c, s.a, lowest))),
+                wide_add(ec, wide(least(s.a, s.b) + shift_of(s.a, s.b, lowest))),
             );
             return true;
         }

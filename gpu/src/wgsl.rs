@@ -1,5 +1,6 @@
 //! A small linker for WGSL: `//#import name` is replaced, once, by the file of
-//! that name, and every line of the result remembers where it came from.
+//! that name, and every line of the result remembers where it came from. After
+//! `//#import name for other` no import leads to `other` any more.
 
 pub mod network;
 mod shipped;
@@ -129,7 +130,9 @@ impl Sources {
         })?;
         for (number, line) in (1..).zip(text.lines()) {
             if let Some(import) = line.strip_prefix("//#import ") {
-                self.append(import.trim(), seen, linked, (name, number))?;
+                let (import, stands_for) = parts(import);
+                self.append(import, seen, linked, (name, number))?;
+                seen.extend(stands_for);
             } else {
                 linked.text.push_str(line);
                 linked.text.push('\n');
@@ -137,6 +140,14 @@ impl Sources {
             }
         }
         Ok(())
+    }
+}
+
+/// The file that an import names, and the one in whose place it stands, if it says so.
+fn parts(import: &str) -> (&str, Option<&str>) {
+    match import.split_once(" for ") {
+        Some((file, other)) => (file.trim(), Some(other.trim())),
+        None => (import.trim(), None),
     }
 }
 

@@ -1,6 +1,7 @@
-//! Finds a driver's sub-pixel grid: WebGPU has no query for it.
+//! Finds a driver's sub-pixel grid, and where its samples lie: WebGPU has no query for either.
 
 mod probe;
+mod samples;
 
 use triptych_gpu::context::Gpu;
 use triptych_gpu::error::GpuError;
@@ -10,6 +11,7 @@ use triptych_spec::raster::{self, Fragment};
 use triptych_spec::vertex::{Primitives, SUBPIXEL_BITS};
 
 use probe::probe;
+pub use samples::calibrate_samples;
 
 /// The coarsest grid that WebGPU's back ends allow (Vulkan: subPixelPrecisionBits
 /// is at least 4).

@@ -10,6 +10,7 @@
 mod ground;
 mod lab;
 mod matrix;
+mod part;
 mod table;
 mod text;
 

@@ -8,6 +8,9 @@ use crate::registry::{Chain, stages_of};
 use crate::scene::Loaded;
 pub use rivals::Asked;
 
+/// A condition inside stage resolve, where pixels have several samples.
+pub const ONCE: &str = "shade once";
+
 /// One pass: whether it runs, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pass {
@@ -34,6 +37,8 @@ pub struct Plan {
     pub cover: bool,
     /// Which rivals of the lists are asked for.
     pub asked: Asked,
+    /// Whether pixels whose samples are all alike are shaded once.
+    pub once: bool,
 }
 
 impl Plan {
@@ -90,8 +95,9 @@ impl Plan {
             lists = decide(name, transparent > 0, why, "no transparent triangles");
         }
         decide("resolve", true, "the picture".into(), "");
-        passes.extend(asked.passes(transparent));
-        passes.extend(by_tiles(transparent, skip));
+        let samples = scene.samples.count();
+        passes.extend(asked.passes(transparent, samples));
+        passes.extend(by_tiles(transparent, samples, skip));
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
             name: "depth test",
@@ -102,8 +108,20 @@ impl Plan {
                 (false, _) => "nothing is skipped: hidden fragments are stored".into(),
             },
         });
+        let once = skip && samples > 1;
+        if samples > 1 {
+            passes.push(Pass {
+                name: ONCE,
+                runs: once,
+                reason: match once {
+                    true => format!("pixels whose {samples} samples are alike are shaded once"),
+                    false => "nothing is skipped: every sample is shaded".into(),
+                },
+            });
+        }
         Self {
             passes,
+            once,
             opaque: opaque_runs,
             lists,
             depth_test,
@@ -118,19 +136,20 @@ impl Plan {
     }
 }
 
-/// The passes of lists by tiles.
-fn by_tiles(transparent: usize, skip: bool) -> impl Iterator<Item = Pass> {
+/// The passes of lists by tiles, which know one sample a pixel.
+fn by_tiles(transparent: usize, samples: u32, skip: bool) -> impl Iterator<Item = Pass> {
     let none = "no transparent triangles";
-    let reason = move || match (transparent, skip) {
-        (0, true) => none.to_owned(),
-        (0, false) => format!("not needed ({none}), but nothing is skipped"),
+    let reason = move || match (samples, transparent, skip) {
+        (2.., ..) => format!("tiles have one sample a pixel, not {samples}"),
+        (_, 0, true) => none.to_owned(),
+        (_, 0, false) => format!("not needed ({none}), but nothing is skipped"),
         _ => format!("{transparent} transparent triangles"),
     };
     ["bin", "jagged", "shade"]
         .into_iter()
         .map(move |name| Pass {
             name,
-            runs: transparent > 0 || !skip,
+            runs: samples < 2 && (transparent > 0 || !skip),
             reason: reason(),
         })
 }

@@ -65,7 +65,8 @@ pub const PLACE: &str = "place";
 /// The other: the driver divides, clips and snaps (`--vertex hardware`).
 pub const PLACE_HANDED: &str = "place_handed";
 
-/// Kernels that are no stage of a replay: `triptych bench` compares and measures them.
+/// Kernels that are no stage by themselves: `triptych bench` compares and measures them, or they
+/// are a stage's in some scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
     /// The WGSL file, in which no other has entry points.
@@ -104,6 +105,18 @@ pub const MEASURED: &[Measured] = &[
             "nearest_layers_sorted",
         ],
         spec: Some("nearest_layers"),
+    },
+    // Stage resolve, where pixels have several samples: in place of its one kernel.
+    Measured {
+        file: "multisample",
+        over: Some("abuffer"),
+        entries: &[
+            "resolve_pixel",
+            "key_samples",
+            "resolve_sample",
+            "resolve_mean",
+        ],
+        spec: Some("resolve_samples"),
     },
 ];
 

@@ -1,5 +1,6 @@
 //! Scenes: from scene.toml or a bare mesh to what every leg is given.
 
+mod abuffer;
 mod blending;
 pub mod expect;
 pub mod file;
@@ -27,7 +28,7 @@ use crate::corpus::{self, Entry};
 use crate::error::InputError;
 use crate::mesh::Intake;
 use crate::text::{self, hex};
-use file::SceneFile;
+use file::{LayerOrder, SceneFile};
 pub use mistake::{Lines, Mistake};
 use sky::Sky;
 use world::World;
@@ -196,6 +197,7 @@ fn of_parsed(
     let places = parsed.file.expect.check_places(parsed.file.size.0);
     places.map_err(|(span, message)| parsed.error(span, message))?;
     digest.update(parsed.file.seed.to_le_bytes());
+    abuffer::check(&parsed)?;
     grid::check(&parsed)?;
     rsm::check(&parsed)?;
     ldm::check(&parsed)?;
@@ -268,7 +270,8 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
         }
     })?;
     // Other families are judged where they are read, and a bare mesh has no lines.
-    let keys = match file.grid.is_some() || file.rsm.is_some() || file.ldm.is_some() {
+    let others = file.grid.is_some() || file.rsm.is_some() || file.ldm.is_some();
+    let keys = match others || file.abuffer.order == LayerOrder::Sample {
         true => Lines::new(text, |at| line_of(&lines, at)),
         false => Lines::default(),
     };

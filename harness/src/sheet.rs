@@ -14,6 +14,8 @@ mod pack;
 mod spec;
 
 use serde::{Deserialize, Serialize};
+use triptych_spec::abuffer::{NOTHING, Opaque};
+use triptych_spec::raster::Fragment;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
@@ -120,6 +122,30 @@ fn source(scene: &Scene, primitives: &Primitives, prim: u32) -> [u32; 2] {
     let row = primitives.source.get(prim as usize);
     let triangle = row.and_then(|row| scene.triangles.get(*row as usize));
     triangle.map_or([u32::MAX; 2], |t| [t.instance, t.primitive])
+}
+
+/// The opaque surfaces behind a pixel's list: key and triangle. Where pixels have several
+/// samples, those that show the same one are one, by its key at the lowest, with their mask.
+fn surfaces(opaque: &Opaque, samples: u32, pixel: u32) -> Vec<Fragment> {
+    let mut all: Vec<Fragment> = Vec::new();
+    for s in 0..samples {
+        let at = samples as usize * pixel as usize + s as usize;
+        let of = |of: &[u32]| of.get(at).copied().filter(|n| *n != NOTHING);
+        let (Some(prim), Some(key)) = (of(&opaque.prim), of(&opaque.key)) else {
+            continue;
+        };
+        let mask = if samples == 1 { 0 } else { 1 << s };
+        match all.iter_mut().find(|surface| surface.prim == prim) {
+            Some(surface) => surface.mask |= mask,
+            None => all.push(Fragment {
+                pixel,
+                prim,
+                key,
+                mask,
+            }),
+        }
+    }
+    all
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ mod alpha;
 mod defocus;
 mod density;
 mod dual;
+mod multisample;
 mod nearest;
 mod peel;
 mod weighted;
@@ -28,6 +29,7 @@ pub use alpha::{Target, alpha};
 pub use defocus::{Lens, RADIUS_MAX, defocus};
 pub use density::{attenuation, density};
 pub use dual::{dual, halves, middle};
+pub use multisample::{Order, average, resolve_pixels, resolve_samples, visible};
 pub use nearest::nearest_layers;
 pub use peel::{LAYERS_MAX, peel};
 pub use weighted::{SUM_LEAST, WEIGHT_LEAST, WEIGHT_MOST, weighted};
@@ -38,7 +40,8 @@ pub const EOL: u32 = u32::MAX;
 /// "No opaque surface": farther than every key.
 pub const NOTHING: u32 = u32::MAX;
 
-/// The nearest opaque surface of every pixel.
+/// The nearest opaque surface at every sample: those of a pixel follow each other, in order of
+/// the mask's bits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Opaque {
     /// Depth key, or [`NOTHING`].
@@ -94,28 +97,44 @@ impl Sorted {
     }
 }
 
+impl Opaque {
+    /// No surface at any sample.
+    pub fn nothing(primitives: &Primitives) -> Self {
+        let samples = primitives.size.pixels() * primitives.samples.count() as usize;
+        Self {
+            key: vec![NOTHING; samples],
+            prim: vec![NOTHING; samples],
+        }
+    }
+
+    /// How many of so many pixels show a surface at any of their samples.
+    pub fn pixels(&self, count: usize) -> usize {
+        let shows = |prims: &&[u32]| prims.iter().any(|p| *p != NOTHING);
+        let samples = (self.prim.len() / count.max(1)).max(1);
+        self.prim.chunks(samples).filter(shows).count()
+    }
+}
+
 /// Stage `opaque`: the smallest `(key, prim)` of the opaque triangles at each
-/// pixel (section 4.1, step 1).
+/// sample, with the true key there (section 4.1, step 1).
 pub fn opaque(scene: &Scene, primitives: &Primitives) -> Opaque {
-    let pixels = primitives.size.pixels();
-    let mut nearest = Opaque {
-        key: vec![NOTHING; pixels],
-        prim: vec![NOTHING; pixels],
-    };
+    let mut nearest = Opaque::nothing(primitives);
     let select = |prim| is_opaque(scene, primitives, prim);
     cover_only(primitives, select, |f| {
-        let pixel = f.pixel as usize;
-        if (f.key, f.prim) < (nearest.key[pixel], nearest.prim[pixel]) {
-            (nearest.key[pixel], nearest.prim[pixel]) = (f.key, f.prim);
-        }
+        multisample::surface(primitives, &f, |place, key| {
+            if (key, f.prim) < (nearest.key[place], nearest.prim[place]) {
+                (nearest.key[place], nearest.prim[place]) = (key, f.prim);
+            }
+        });
     });
     nearest
 }
 
 /// Stage `build`: transparent fragments into linked lists (section 4.1, step 2).
 ///
-/// A fragment is kept if and only if its key is less than the opaque key; with
-/// `depth_test` false, all are kept. Insertion follows section 3, steps 1 to 3.
+/// A fragment is kept if and only if its key is less than the opaque key at one of its
+/// samples or more, and its mask is these alone ([`visible`]); with `depth_test` false, all are
+/// kept as they are. Insertion follows section 3, steps 1 to 3.
 pub fn build(
     scene: &Scene,
     primitives: &Primitives,
@@ -132,8 +151,12 @@ pub fn build(
     };
     let select = |prim| !is_opaque(scene, primitives, prim);
     cover_only(primitives, select, |f| {
-        let hidden = depth_test && f.key >= opaque.key[f.pixel as usize];
-        if !hidden {
+        let mask = match depth_test {
+            true => visible(primitives, opaque, &f),
+            false => f.mask,
+        };
+        if mask != 0 {
+            let f = Fragment { mask, ..f };
             insert(&mut lists, f, colour(scene, primitives, f.prim));
         }
     });
@@ -205,21 +228,33 @@ pub fn sort(lists: &Lists) -> Sorted {
 /// multiplied by factors within 1 and then by the colour, which may be large: at
 /// most `(3i + 2) |c_i| TINY`. The colour itself, the product and the addition add
 /// three more.
+///
+/// With several samples it is the mean of theirs, with layers in the scene's order
+/// ([`resolve_pixels`], [`resolve_samples`]).
 pub fn resolve(
     scene: &Scene,
     primitives: &Primitives,
     opaque: &Opaque,
     sorted: &Sorted,
 ) -> Vec<[Bounded; 3]> {
-    let blend = |pixel: usize| {
-        let visible = sorted
-            .list(pixel)
-            .iter()
-            .filter(|f| f.key < opaque.key[pixel]);
-        let layers: Vec<[f32; 4]> = visible.map(|f| colour(scene, primitives, f.prim)).collect();
-        over(&layers, behind(scene, primitives, opaque, pixel))
-    };
-    (0..primitives.size.pixels()).map(blend).collect()
+    match scene.order {
+        Order::Centroid => resolve_pixels(scene, primitives, opaque, sorted),
+        order @ Order::Sample => {
+            let samples = resolve_samples(scene, primitives, opaque, sorted, order);
+            average(&samples, primitives.samples.count())
+        }
+    }
+}
+
+/// What lies behind the layers at a sample.
+fn behind(scene: &Scene, primitives: &Primitives, opaque: &Opaque, sample: usize) -> [f32; 3] {
+    match opaque.prim[sample] {
+        NOTHING => scene.background,
+        prim => {
+            let [r, g, b, _] = colour(scene, primitives, prim);
+            [r, g, b]
+        }
+    }
 }
 
 fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
@@ -251,17 +286,6 @@ fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
     }
     add(n, transmittance, behind);
     sum
-}
-
-/// What lies behind a pixel's layers.
-fn behind(scene: &Scene, primitives: &Primitives, opaque: &Opaque, pixel: usize) -> [f32; 3] {
-    match opaque.prim[pixel] {
-        NOTHING => scene.background,
-        prim => {
-            let [r, g, b, _] = colour(scene, primitives, prim);
-            [r, g, b]
-        }
-    }
 }
 
 fn is_opaque(scene: &Scene, primitives: &Primitives, prim: u32) -> bool {

@@ -8,8 +8,15 @@
 //! negative their sum is the area, so depth numerators stay below 2^71. `i64` and
 //! `i128` hold them. Twin: `gpu/src/raster.wgsl`.
 
+mod depth;
+mod multisample;
+mod samples;
+
 use crate::scene::Size;
 use crate::vertex::Primitives;
+use depth::Depth;
+pub use multisample::sample_nodes;
+pub use samples::{SAMPLES_MAX, Samples, samples_of};
 
 /// One covered pixel of one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,32 +37,6 @@ pub struct Setup {
     corners: [[i64; 3]; 3],
     /// Twice the area in square sub-pixels; positive.
     pub area: i64,
-}
-
-/// An exact quotient by the area: `quotient + rest / area`, with `0 <= rest < area`.
-#[derive(Clone, Copy)]
-struct Depth {
-    quotient: i64,
-    rest: i64,
-}
-
-impl Depth {
-    /// The quotient at a covered sample.
-    fn key(self) -> u32 {
-        u32::try_from(self.quotient).expect("a convex combination of 31-bit keys")
-    }
-
-    /// The sum of two quotients by the same area, which is as exact.
-    fn plus(self, step: Self, area: i64) -> Self {
-        let (quotient, rest) = (self.quotient + step.quotient, self.rest + step.rest);
-        match rest < area {
-            true => Self { quotient, rest },
-            false => Self {
-                quotient: quotient + 1,
-                rest: rest - area,
-            },
-        }
-    }
 }
 
 /// Columns `start..end` of a row.
@@ -183,7 +164,13 @@ impl Setup {
 
     /// The columns of a row where edge function `i` is at least `least[i]`.
     pub fn span_above(&self, least: [i64; 3], row: u32, size: Size, bits: u32) -> Span {
-        let origin = self.edges([sample(0, bits), sample(row, bits)]);
+        self.span_from(least, [sample(0, bits), sample(row, bits)], size, bits)
+    }
+
+    /// The columns where edge function `i` is at least `least[i]`, at samples of which column
+    /// 0 has its at `origin`.
+    fn span_from(&self, least: [i64; 3], origin: [i64; 2], size: Size, bits: u32) -> Span {
+        let origin = self.edges(origin);
         let steps = self.edge_steps(bits);
         let (mut start, mut end) = (0, i64::from(size.width));
         for i in 0..3 {
@@ -202,7 +189,8 @@ impl Setup {
 }
 
 /// Stage `cover`: every fragment of every triangle, in order of triangle, row and
-/// column, with one sample in the middle of each pixel.
+/// column. A pixel is covered if any of its samples is; its key is that at the lowest covered
+/// sample, which section 4.1.2 calls the centroid.
 pub fn cover(primitives: &Primitives, emit: impl FnMut(Fragment)) {
     cover_only(primitives, |_| true, emit);
 }
@@ -218,6 +206,10 @@ pub fn cover_only(
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };
+        if primitives.samples.count() > 1 {
+            setup.fragments(prim, primitives, &mut emit);
+            continue;
+        }
         // Many triangles of a fine mesh lie between two columns.
         if setup.columns(size, bits).is_empty() {
             continue;
@@ -258,6 +250,13 @@ pub fn count(primitives: &Primitives) -> u64 {
     let (size, bits) = (primitives.size, primitives.bits);
     let fragments = |prim| {
         let setup = Setup::new(primitives, prim)?;
+        if primitives.samples.count() > 1 {
+            let mut fragments = 0;
+            for row in setup.rows_of_samples(primitives) {
+                setup.masks(row, primitives, |_, _| fragments += 1);
+            }
+            return Some(fragments);
+        }
         let span = |row| setup.span(row, size, bits).len() as u64;
         Some(setup.rows(size, bits).map(span).sum::<u64>())
     };
@@ -266,7 +265,7 @@ pub fn count(primitives: &Primitives) -> u64 {
         .sum()
 }
 
-/// Where the sample of a column (row) lies, in sub-pixels.
+/// Where the middle of a column (row), its only sample if it has one, lies in sub-pixels.
 pub fn sample(pixel: u32, bits: u32) -> i64 {
     (i64::from(pixel) << bits) + (1 << (bits - 1))
 }
@@ -279,7 +278,12 @@ fn edge(a: [i64; 3], b: [i64; 3], [x, y]: [i64; 2]) -> i64 {
 
 /// The first pixel whose sample lies at or after a coordinate, within the target.
 fn first_sample(coordinate: i64, bits: u32, side: u32) -> u32 {
-    let pixel = -(((1 << (bits - 1)) - coordinate) >> bits);
+    first_pixel(coordinate, 1 << (bits - 1), bits, side)
+}
+
+/// The same of samples that lie `offset` after the beginning of their pixels.
+fn first_pixel(coordinate: i64, offset: i64, bits: u32, side: u32) -> u32 {
+    let pixel = -((offset - coordinate) >> bits);
     column(pixel.clamp(0, i64::from(side)))
 }
 

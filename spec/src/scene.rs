@@ -2,7 +2,9 @@
 //! size in pixels. Loading files and shading faces happen before (in the
 //! harness), once, so that all legs start from the same bits.
 
+use crate::abuffer::Order;
 use crate::matrix::Matrix;
+use crate::raster::Samples;
 
 /// Size of the target in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +59,10 @@ impl Triangle {
 pub struct Scene {
     /// Size of the target.
     pub size: Size,
+    /// The samples of every pixel.
+    pub samples: Samples,
+    /// In which order layers lie at each of them, where there are several.
+    pub order: Order,
     /// Clip space from object space, one per instance (WebGPU's clip volume:
     /// `-w <= x, y <= w`, `0 <= z <= w`, y up).
     pub instances: Vec<Matrix>,

@@ -9,6 +9,7 @@ mod clip;
 
 use crate::bound::Real;
 use crate::matrix::Matrix;
+use crate::raster::Samples;
 use crate::scene::{Scene, Size};
 
 pub use clip::{Plane, clip, clip_triangle};
@@ -49,6 +50,8 @@ pub struct Primitives {
     pub size: Size,
     /// Sub-pixel bits of `x` and `y`.
     pub bits: u32,
+    /// The samples of every pixel.
+    pub samples: Samples,
     /// Corners: x right and y down in sub-pixels from the target's top left, z key.
     pub snapped: Vec<[i32; 3]>,
     /// Triangles after clipping, as rows of `snapped`, in tie order.
@@ -137,6 +140,7 @@ pub fn snap(scene: &Scene, polygons: &Polygons<f64>, bits: u32) -> Primitives {
     let mut primitives = Primitives {
         size: scene.size,
         bits,
+        samples: scene.samples,
         snapped: polygons.corners.iter().map(round).collect(),
         prims: Vec::new(),
         source: Vec::new(),

@@ -1,5 +1,7 @@
 //! Laws of the A-buffer.
 
+#[path = "abuffer/multisample.rs"]
+mod multisample;
 #[path = "abuffer/nearest.rs"]
 mod nearest;
 #[path = "abuffer/order.rs"]
@@ -74,6 +76,8 @@ pub fn painted(primitives: &Primitives, colours: &[[f32; 4]], background: [f32; 
         colour: *colour,
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: primitives.size,
         instances: Vec::new(),
         vertices: Vec::new(),

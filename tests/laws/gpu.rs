@@ -9,13 +9,14 @@ use triptych_gpu::raster::Path;
 use triptych_harness::compare::image;
 use triptych_harness::observe::Observed;
 use triptych_harness::plan::{Asked, Plan};
-use triptych_harness::replay::gpu::{Adapter, Adapters, From, GpuLeg};
+use triptych_harness::replay::gpu::{Adapter, Adapters, Drawn, From, GpuLeg};
 use triptych_harness::replay::rows::Rows;
 use triptych_harness::replay::spec::SpecRun;
 use triptych_harness::replay::{Extent, rivals};
 use triptych_harness::row::Verdict;
-use triptych_spec::abuffer::{Lens, Target};
-use triptych_spec::vertex::{GUARD, guard_origin};
+use triptych_spec::abuffer::{Lens, Order, Target};
+use triptych_spec::raster::Samples;
+use triptych_spec::vertex::{GUARD, Primitives, guard_origin};
 
 use super::abuffer::{Layers, coloured};
 use super::config;
@@ -93,6 +94,47 @@ fn agrees(layers: &Layers, adapter: &Adapter, path: Path, skip: bool) -> Result<
         "no fragments were"
     );
     Ok(())
+}
+
+/// Whether a leg draws with just these samples.
+fn draws(adapter: &Adapter, path: Path, primitives: &Primitives) -> bool {
+    let drawn = adapter.samples(path, primitives.samples);
+    let on_grid = path != Path::Fragment || adapter.bits(path) == primitives.bits;
+    on_grid && matches!(drawn, Ok(Drawn::With(samples)) if samples == primitives.samples)
+}
+
+/// The samples of every driver are where WebGPU says, wherever they are in use.
+#[test]
+fn samples_are_in_standard_places() {
+    for adapter in adapters() {
+        let four = Samples::standard(4).expect("a pattern");
+        let drawn = adapter.samples(Path::Fragment, four);
+        assert_eq!(drawn, Ok(Drawn::With(four)), "{}", adapter.gpu.name);
+    }
+}
+
+proptest! {
+    #![proptest_config(config(16))]
+
+    /// The same with several samples a pixel, in both orders of layers.
+    #[test]
+    fn random_samples(
+        mut layers in layers(),
+        samples in prop::sample::select(vec![2, 4, 4, 8]),
+        by_sample in any::<bool>(),
+        skip in any::<bool>(),
+    ) {
+        let samples = Samples::standard(samples).expect("a pattern");
+        (layers.scene.samples, layers.primitives.samples) = (samples, samples);
+        layers.scene.order = if by_sample { Order::Sample } else { Order::Centroid };
+        for adapter in adapters() {
+            for path in [Path::Compute, Path::Fragment, Path::Native] {
+                if draws(adapter, path, &layers.primitives) {
+                    agrees(&layers, adapter, path, skip)?;
+                }
+            }
+        }
+    }
 }
 
 proptest! {

@@ -1,5 +1,7 @@
 //! Laws of the raster stage.
 
+#[path = "raster/multisample.rs"]
+pub mod multisample;
 #[path = "raster/partition.rs"]
 mod partition;
 

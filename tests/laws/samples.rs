@@ -96,6 +96,7 @@ pub fn soup_on(bits: u32, count: std::ops::Range<usize>) -> impl Strategy<Value 
 pub fn primitives(size: Size, bits: u32, triangles: &[Triangle]) -> Primitives {
     let rows = 0..u32::try_from(triangles.len()).expect("few triangles");
     Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size,
         bits,
         snapped: triangles.concat(),

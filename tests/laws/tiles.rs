@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use proptest::prelude::*;
 use triptych_spec::abuffer::{NOTHING, Opaque, build, opaque, resolve, sort};
-use triptych_spec::raster::{Fragment, Setup, cover, sample};
+use triptych_spec::raster::{Fragment, Samples, Setup, cover, sample};
 use triptych_spec::scene::Size;
 use triptych_spec::tiles::{Bins, Jagged, LISTS, ROWS, SIDE, bin, jagged, shade, sorted};
 use triptych_spec::vertex::Primitives;
@@ -62,6 +62,7 @@ fn stack(layers: u32) -> Layers {
             height: 9,
         },
         bits: 8,
+        samples: Samples::default(),
         snapped: snapped.collect(),
         prims: (0..layers).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         source: (0..layers).collect(),

@@ -39,6 +39,8 @@ pub fn scene(size: Size, matrix: Matrix, vertices: &[[f32; 3]], triangles: &[[u3
         colour: [1.0; 4],
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size,
         instances: vec![matrix],
         vertices: vertices.iter().map(vertex).collect(),

@@ -52,7 +52,7 @@ fn the_frame_is_that_of_rust() {
     }
     let fields = fields!(
         width height bits capacity first_row rows work_first work_count items guard_x guard_y
-        depth_test background
+        depth_test background samples sample order once places
     );
     let word = |at: usize| u32::try_from(at).expect("a small struct");
     let fields = fields

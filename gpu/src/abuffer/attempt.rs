@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use triptych_spec::abuffer::{Lists, Opaque};
+use triptych_spec::abuffer::{Lists, Opaque, Order};
 
 use super::buffers::{Buffers, HEADER};
 use super::{BandResult, Options, Times};
@@ -95,21 +95,30 @@ impl Run<'_, '_> {
         self.band.pixels(self.rasterizer.size)
     }
 
+    /// Samples of a pixel.
+    fn samples(&self) -> u32 {
+        self.rasterizer.samples.count()
+    }
+
     fn buffers(&self) -> Result<Buffers, GpuError> {
         let fault = self.rasterizer.kernels.fault();
         let Some(given) = self.options.given else {
-            return Buffers::empty(self.gpu(), self.pixels(), self.capacity, fault);
+            let pixels = [self.pixels(), self.samples()];
+            return Buffers::sampled(self.gpu(), pixels, self.capacity, fault);
         };
         let first = (self.band.first * self.rasterizer.size.width) as usize;
         let pixels = first..first + self.pixels() as usize;
+        let pixels = (pixels, self.samples());
         Buffers::given(self.gpu(), given, pixels, self.capacity, fault)
     }
 
-    fn frame(&self) -> Frame {
+    pub(super) fn frame(&self) -> Frame {
         let [r, g, b] = self.options.background;
         Frame {
             capacity: self.capacity,
             depth_test: u32::from(self.options.depth_test),
+            order: u32::from(self.options.order == Order::Sample),
+            once: u32::from(self.options.once),
             background: [r, g, b, 1.0],
             ..self.rasterizer.frame(self.band)
         }
@@ -152,21 +161,29 @@ impl Run<'_, '_> {
     /// the picture.
     fn finish(&mut self, b: &Buffers, longest: u32) -> Result<(Lists, Vec<[f32; 3]>), GpuError> {
         if self.options.lists && !self.options.given.is_some_and(|g| g.sorted) {
-            self.times.sort = self.until_done("sort", longest, b)?;
+            self.times.sort = self.until_done(("abuffer", "sort"), self.frame(), longest, b)?;
         }
-        self.times.resolve = self.until_done("resolve", longest, b)?;
+        // Samples by their true depth change the nodes' keys and order.
+        let lists = self.lists(b)?;
+        self.times.resolve = match self.samples() {
+            1 => self.until_done(("abuffer", "resolve"), self.frame(), longest, b)?,
+            _ => self.resolve_samples(longest, b)?,
+        };
+        let stride = self.samples() as usize;
         let picture = self
             .gpu()
-            .read::<[f32; 4]>(&b.picture, self.pixels() as usize)?;
-        let image = picture.into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
-        Ok((self.lists(b)?, image))
+            .read::<[f32; 4]>(&b.picture, self.pixels() as usize * stride)?;
+        let image = picture.into_iter().step_by(stride);
+        let image = image.map(|[r, g, b, _]| [r, g, b]).collect();
+        Ok((lists, image))
     }
 
     /// Dispatches a stage until no pixel asks for more; what needs more than
     /// [`dispatches`] follows a list that does not end.
-    fn until_done(
+    pub(super) fn until_done(
         &self,
-        stage: &'static str,
+        (file, stage): (&str, &'static str),
+        frame: Frame,
         longest: u32,
         b: &Buffers,
     ) -> Result<Duration, GpuError> {
@@ -175,7 +192,7 @@ impl Run<'_, '_> {
         clear(gpu, &b.progress, None)?;
         for _ in 0..dispatches(longest) {
             clear(gpu, &b.progress, Some(HEADER))?;
-            time += per_pixel(self.rasterizer, "abuffer", stage, self.frame(), &b.named())?;
+            time += per_pixel(self.rasterizer, file, stage, frame, &b.named())?;
             if gpu.read::<u32>(&b.progress, 1)?[0] == 0 {
                 return Ok(time);
             }
@@ -190,9 +207,10 @@ impl Run<'_, '_> {
         b.lists(self.gpu(), self.pixels(), self.capacity)
     }
 
-    /// One word per pixel of the band.
+    /// One word per sample of the band.
     fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
-        self.gpu().read(buffer, self.pixels() as usize)
+        self.gpu()
+            .read(buffer, self.pixels() as usize * self.samples() as usize)
     }
 }
 

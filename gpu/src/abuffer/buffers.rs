@@ -19,12 +19,22 @@ pub(super) const HEADER: u64 = 4;
 /// Pixels that a dispatch of one workgroup row can serve.
 const PIXELS_MAX: u64 = 65_535 * crate::frame::WORKGROUP as u64;
 
+/// Bytes of a sample's colour in the picture.
+const COLOUR: u64 = 16;
+
 /// Heads, opaque surfaces, picture and progress of a pixel; a node and its colour.
 pub(super) fn need(gpu: &Gpu) -> Need {
-    let bindable = gpu.binding_limit().saturating_sub(HEADER) / PROGRESS;
+    need_of(gpu, 1)
+}
+
+/// The same where pixels have so many samples: surfaces and picture are those of each.
+pub(super) fn need_of(gpu: &Gpu, samples: u32) -> Need {
+    let samples = u64::from(samples);
+    let largest = PROGRESS.max(samples * COLOUR);
+    let bindable = gpu.binding_limit().saturating_sub(HEADER) / largest;
     Need {
         what: "build",
-        pixel: 3 * 4 + 16 + PROGRESS,
+        pixel: 4 + samples * (2 * 4 + COLOUR) + PROGRESS,
         node: 16 + 16,
         pixels_max: PIXELS_MAX.min(bindable),
     }
@@ -50,17 +60,27 @@ impl Buffers {
         capacity: u32,
         fault: Option<Fault>,
     ) -> Result<Self, GpuError> {
-        let opaque_key = gpu.filled("opaque_key", pixels, NOTHING)?;
-        let opaque_prim = gpu.filled("opaque_prim", pixels, NOTHING)?;
+        Self::sampled(gpu, [pixels, 1], capacity, fault)
+    }
+
+    /// The same for so many pixels, and samples of each.
+    pub(super) fn sampled(
+        gpu: &Gpu,
+        [pixels, samples]: [u32; 2],
+        capacity: u32,
+        fault: Option<Fault>,
+    ) -> Result<Self, GpuError> {
+        let opaque_key = gpu.filled("opaque_key", pixels * samples, NOTHING)?;
+        let opaque_prim = gpu.filled("opaque_prim", pixels * samples, NOTHING)?;
         let surfaces = [opaque_key, opaque_prim];
-        Self::in_front_of(gpu, surfaces, pixels, capacity, fault)
+        Self::in_front_of(gpu, surfaces, [pixels, samples], capacity, fault)
     }
 
     /// Empty lists, with room for so many nodes, in front of these surfaces.
     fn in_front_of(
         gpu: &Gpu,
         [opaque_key, opaque_prim]: [wgpu::Buffer; 2],
-        pixels: u32,
+        [pixels, samples]: [u32; 2],
         capacity: u32,
         fault: Option<Fault>,
     ) -> Result<Self, GpuError> {
@@ -80,7 +100,7 @@ impl Buffers {
             heads: gpu.filled("heads", pixels, head)?,
             nodes: gpu.storage("nodes", nodes)?,
             colours: gpu.storage("colours", nodes)?,
-            picture: gpu.storage("picture", 16 * u64::from(pixels))?,
+            picture: gpu.storage("picture", COLOUR * u64::from(pixels) * u64::from(samples))?,
             progress: gpu.storage("progress", HEADER + PROGRESS * u64::from(pixels))?,
         })
     }
@@ -90,15 +110,18 @@ impl Buffers {
     pub(super) fn given(
         gpu: &Gpu,
         given: Given<'_>,
-        pixels: Range<usize>,
+        (pixels, samples): (Range<usize>, u32),
         capacity: u32,
         fault: Option<Fault>,
     ) -> Result<Self, GpuError> {
-        let opaque_key = gpu.upload("opaque_key", &given.opaque.key[pixels.clone()])?;
-        let opaque_prim = gpu.upload("opaque_prim", &given.opaque.prim[pixels.clone()])?;
+        let each = samples as usize;
+        let places = pixels.start * each..pixels.end * each;
+        let opaque_key = gpu.upload("opaque_key", &given.opaque.key[places.clone()])?;
+        let opaque_prim = gpu.upload("opaque_prim", &given.opaque.prim[places])?;
         let Some(lists) = given.lists else {
             let surfaces = [opaque_key, opaque_prim];
-            return Self::in_front_of(gpu, surfaces, word(pixels.len()), capacity, fault);
+            let pixels = [word(pixels.len()), samples];
+            return Self::in_front_of(gpu, surfaces, pixels, capacity, fault);
         };
         let count = pixels.len() as u64;
         let part = Part::of(lists, pixels);
@@ -109,7 +132,7 @@ impl Buffers {
             heads: gpu.upload("heads", &part.heads)?,
             nodes: gpu.upload("nodes", &part.nodes)?,
             colours: gpu.upload("colours", &part.colours)?,
-            picture: gpu.storage("picture", 16 * count)?,
+            picture: gpu.storage("picture", COLOUR * count * u64::from(samples))?,
             progress: gpu.storage("progress", HEADER + PROGRESS * count)?,
         })
     }

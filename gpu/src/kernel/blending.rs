@@ -24,7 +24,7 @@ impl Kernels {
         let formats: Vec<_> = targets.iter().map(|t| t.format).collect();
         let place_into = format!("{place} {formats:?}");
         let targets: Vec<_> = targets.iter().cloned().map(Some).collect();
-        self.get(gpu, file, [&place_into, entry], |ours, module| {
+        self.get(gpu, file, ([&place_into, entry], 1), |ours, module| {
             let descriptor = wgpu::RenderPipelineDescriptor {
                 label: Some(entry),
                 layout: None,

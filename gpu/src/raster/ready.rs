@@ -42,7 +42,13 @@ impl Rasterizer<'_> {
                     Some(_) => "place_handed",
                 };
                 let entry = format!("{stage}_fragment");
-                self.kernels.fragment(self.gpu, file, place, &entry)?
+                let samples = self.samples.count();
+                let file = match samples {
+                    1 => file.to_owned(),
+                    _ => format!("{file}_samples"),
+                };
+                self.kernels
+                    .fragment(self.gpu, &file, [place, &entry], samples)?
             }
         };
         self.ready_kernel(&kernel, stage, frame, work, buffers)
@@ -95,7 +101,11 @@ impl Rasterizer<'_> {
     ) -> Result<Ready, GpuError> {
         let kernel = self.kernels.compute(self.gpu, file, stage)?;
         let uniform = self.gpu.uniform("frame", &frame)?;
-        let mut all = vec![("frame", &uniform), ("faces", &self.faces)];
+        let mut all = vec![
+            ("frame", &uniform),
+            ("corners", &self.corners),
+            ("faces", &self.faces),
+        ];
         all.extend_from_slice(buffers);
         Ok(Ready {
             group: kernel.bind(self.gpu, &all),

@@ -1,5 +1,7 @@
 //! Sharing out rows of triangles among invocations.
 
+use triptych_spec::raster::Samples;
+
 use super::Rasterizer;
 use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
@@ -19,14 +21,23 @@ pub(super) struct Batch {
     pub(super) items: u32,
 }
 
-/// First and last row whose samples lie within a triangle's height; `None` if it
+/// How far down from a pixel's top its highest and its lowest sample are, in sub-pixels.
+pub(super) fn heights(samples: Samples, bits: u32) -> [i64; 2] {
+    let down = || samples.offsets(bits).map(|[_, down]| down);
+    [down().min(), down().max()].map(|end| end.expect("a pixel has a sample"))
+}
+
+/// First and last row of which a sample lies within a triangle's height; `None` if it
 /// has none. This only shares out work: which of the samples are covered is decided
 /// on the device.
-pub(super) fn sampled_rows(corners: &[[i32; 3]; 3], bits: u32) -> Option<[i64; 2]> {
+pub(super) fn sampled_rows(
+    corners: &[[i32; 3]; 3],
+    bits: u32,
+    [highest, lowest]: [i64; 2],
+) -> Option<[i64; 2]> {
     let y = corners.map(|c| i64::from(c[1]));
-    let half = 1_i64 << (bits - 1);
-    let top = -((half - y[0].min(y[1]).min(y[2])) >> bits);
-    let bottom = (y[0].max(y[1]).max(y[2]) - half) >> bits;
+    let top = -((lowest - y[0].min(y[1]).min(y[2])) >> bits);
+    let bottom = (y[0].max(y[1]).max(y[2]) - highest) >> bits;
     (top <= bottom).then_some([top, bottom])
 }
 

@@ -38,6 +38,8 @@ fn spiral(triangles: u32, spare: u32) -> Scene {
         colour: [1.0; 4],
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: Size {
             width: 64,
             height: 48,

@@ -20,6 +20,7 @@ impl Sources {
     pub fn shipped(native: bool) -> Self {
         let mut files = shipped!(
             "abuffer",
+            "abuffer_samples",
             "alpha",
             "asked",
             "bin",
@@ -32,6 +33,8 @@ impl Sources {
             "defocus",
             "density",
             "depth",
+            "drawn",
+            "drawn_samples",
             "dual",
             "frame",
             "grid",
@@ -44,6 +47,7 @@ impl Sources {
             "march",
             "meet",
             "mirror",
+            "multisample",
             "near",
             "near_wide",
             "nearest",
@@ -53,6 +57,7 @@ impl Sources {
             "peel",
             "place",
             "raster",
+            "raster_samples",
             "ray",
             "receiver",
             "relink",

@@ -7,6 +7,7 @@ use triptych_gpu::abuffer;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::timer::Clock;
+use triptych_spec::abuffer::Order;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::counts::Work;
@@ -100,6 +101,14 @@ pub(super) fn scene(
 ) -> Result<Done, String> {
     let plan = Plan::new(&loaded.scene, true);
     let mut done = Done::default();
+    if loaded.scene.samples.count() > 1 {
+        let words = format!(
+            "{}: frames of one sample a pixel are timed alone",
+            loaded.name
+        );
+        done.skipped.push(words);
+        return Ok(done);
+    }
     let grids = grids(loaded, &plan, stations, options)?;
     if grids.values().all(|grid| grid.counts.longest() == 0) {
         let words = format!("{}: nothing transparent is seen", loaded.name);
@@ -192,6 +201,8 @@ fn legs<'r>(
         opaque: plan.opaque,
         lists: plan.lists,
         depth_test: plan.depth_test,
+        order: Order::Centroid,
+        once: false,
         background: loaded.scene.background,
     };
     let mut legs = Vec::new();

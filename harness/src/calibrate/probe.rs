@@ -23,6 +23,7 @@ const SIZE: Size = Size {
 pub fn probe(bits: u32) -> Primitives {
     let mut random = SplitMix(0x7121_7974);
     let mut primitives = Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: SIZE,
         bits,
         snapped: Vec::new(),

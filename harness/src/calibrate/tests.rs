@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use triptych_spec::raster::Setup;
+use triptych_spec::raster::{Samples, Setup};
 use triptych_spec::vertex::{GUARD, guard_origin};
 
 use super::*;
@@ -152,4 +152,76 @@ fn edges_in_single_precision_are_seen() {
         })
     });
     assert_eq!(grid, Grid::Unknown);
+}
+
+/// Drivers with samples of their own, which they have in place of those that they are asked for.
+fn samples_of_driver(
+    bits: u32,
+    count: u32,
+    driver: impl Fn(&Primitives) -> Vec<Fragment>,
+) -> Option<Samples> {
+    let Ok(found) = samples::found(bits, count, |probe| Ok::<_, Infallible>(driver(probe)));
+    found
+}
+
+fn standard(count: u32) -> Samples {
+    Samples::standard(count).expect("a pattern")
+}
+
+#[test]
+fn samples_are_found_on_every_grid() {
+    for bits in BITS_MIN..=SUBPIXEL_BITS {
+        for count in [2, 4, 8] {
+            assert_eq!(samples_of_driver(bits, count, exact), Some(standard(count)));
+        }
+    }
+}
+
+/// Also where they are not standard, and in another order.
+#[test]
+fn samples_are_found_wherever_they_are() {
+    for places in [
+        [[14, 6], [6, 2], [2, 10], [10, 14]],
+        [[0, 0], [15, 15], [8, 8], [3, 12]],
+    ] {
+        let own = Samples::found(&places, 4).expect("inside the pixel");
+        for bits in [4, 8] {
+            let seen = samples_of_driver(bits, 4, |probe| {
+                exact(&Primitives {
+                    samples: own,
+                    ..probe.clone()
+                })
+            });
+            assert_eq!(seen, Some(own), "{places:?} at {bits} bits");
+        }
+    }
+}
+
+#[test]
+fn masks_of_no_samples_are_not_trusted() {
+    let own = |probe: &Primitives| {
+        exact(&Primitives {
+            samples: standard(4),
+            ..probe.clone()
+        })
+    };
+    let masked = |mask: fn(&Fragment) -> u32| {
+        samples_of_driver(8, 4, |probe| {
+            let fragments = own(probe).into_iter();
+            fragments
+                .map(|f| Fragment {
+                    mask: mask(&f),
+                    ..f
+                })
+                .collect()
+        })
+    };
+    assert_eq!(masked(|_| 15), None, "always all");
+    assert_eq!(masked(|f| f.mask & 7), None, "one is never covered");
+    assert_eq!(masked(|f| f.mask.min(7)), None, "all but one at the most");
+    let one = |f: &Fragment| f.mask ^ u32::from(f.pixel == 1700);
+    assert_eq!(masked(one), None, "one pixel of the target is wrong");
+    let lost = samples_of_driver(8, 4, |probe| own(probe).split_off(1));
+    assert_eq!(lost, None, "a fragment is lost");
+    assert_eq!(samples_of_driver(8, 3, exact), None, "three");
 }

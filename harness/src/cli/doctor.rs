@@ -50,7 +50,8 @@ fn list(out: &mut impl Write, Adapters { open, broken }: &Adapters) -> anyhow::R
     if open.is_empty() && broken.is_empty() {
         writeln!(out, "  none; `./x setup` installs two software drivers")?;
     }
-    for Adapter { gpu, grid, .. } in open {
+    for adapter in open {
+        let Adapter { gpu, grid, .. } = adapter;
         let info = &gpu.info;
         writeln!(out, "  {}: {}, {:?}", gpu.name, info.name, info.backend)?;
         writeln!(out, "    driver {} {}", info.driver, info.driver_info)?;
@@ -65,6 +66,7 @@ fn list(out: &mut impl Write, Adapters { open, broken }: &Adapters) -> anyhow::R
             Grid::Bits(bits) => writeln!(out, "    sub-pixel grid 1/{}", 1 << bits)?,
             Grid::Unknown => writeln!(out, "    sub-pixel grid unknown: compared by a band")?,
         }
+        writeln!(out, "    {}", adapter.samples_in_words())?;
         for (_, bug) in KNOWN.iter().filter(|(name, _)| gpu.name.contains(name)) {
             writeln!(out, "    known: {bug}")?;
         }

@@ -28,6 +28,7 @@ pub use lists::layers;
 pub fn drawn(maps: &Maps, map: &Map, blockers: &Blockers) -> Primitives {
     let places = blockers.vertices.iter().map(|v| maps.place(map, *v));
     Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: map.size,
         bits: maps.bits,
         snapped: places.collect(),

@@ -101,20 +101,21 @@ fn opaque(
     alone: &mut u64,
     judgement: &mut Judgement,
 ) -> Vec<u32> {
-    let seen = |side: Side<'_>, pixel: usize| {
-        let [key, prim] = [&side.opaque.key, &side.opaque.prim].map(|of| of.get(pixel).copied());
+    let seen = |side: Side<'_>, place: usize| {
+        let [key, prim] = [&side.opaque.key, &side.opaque.prim].map(|of| of.get(place).copied());
         let prim = prim.filter(|p| *p != NOTHING);
         let source = prim.map(|p| side.primitives.source[p as usize]);
         (key.unwrap_or(NOTHING), source.unwrap_or(NOTHING))
     };
     let mut elsewhere = Vec::new();
-    for pixel in 0..spec.opaque.key.len().max(own.opaque.key.len()) {
-        let (a, b) = (seen(spec, pixel), seen(own, pixel));
+    let samples = spec.primitives.samples.count();
+    for place in 0..spec.opaque.key.len().max(own.opaque.key.len()) {
+        let (a, b) = (seen(spec, place), seen(own, place));
         if (a.1, b.1) == (NOTHING, NOTHING) {
             continue;
         }
         judgement.compared += 1;
-        let number = u32::try_from(pixel).expect("a target has at most 2^22 pixels");
+        let number = u32::try_from(place).expect("at most 2^22 pixels, of 8 samples") / samples;
         if a == b {
             continue;
         } else if moved.is(a.1) || moved.is(b.1) {

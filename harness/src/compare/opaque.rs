@@ -1,7 +1,7 @@
-//! Stage `opaque`: the nearest opaque surface of every pixel.
+//! Stage `opaque`: the nearest opaque surface at every sample of every pixel.
 
 use triptych_spec::abuffer::{NOTHING, Opaque};
-use triptych_spec::raster::{Setup, sample};
+use triptych_spec::raster::Setup;
 use triptych_spec::vertex::Primitives;
 
 use crate::cause::Cause;
@@ -9,7 +9,7 @@ use crate::compare::Judgement;
 use crate::compare::fragments::at;
 use crate::row::Class;
 
-/// Compares key and triangle of every pixel.
+/// Compares key and triangle at every sample.
 ///
 /// Another triangle with the same key is a broken tie. A triangle with another key
 /// than the spec gives it there is a wrong key; with the same key, it shows through
@@ -17,40 +17,45 @@ use crate::row::Class;
 /// not be there at all.
 pub fn compare(spec: &Opaque, other: &Opaque, primitives: &Primitives) -> Judgement {
     let width = primitives.size.width;
-    let mut judgement = Judgement::new(Class::Exact, "pixels");
+    let samples = primitives.samples.count();
+    let unit = if samples == 1 { "pixels" } else { "samples" };
+    let mut judgement = Judgement::new(Class::Exact, unit);
     if other.key.len() != spec.key.len() || other.prim.len() != spec.prim.len() {
         judgement.differs(Cause::ReferenceMissing, None, || {
-            format!("{} pixels, must be {}", other.key.len(), spec.key.len())
+            format!("{} {unit}, must be {}", other.key.len(), spec.key.len())
         });
         return judgement;
     }
     let spec = spec.key.iter().zip(&spec.prim);
     let other = other.key.iter().zip(&other.prim);
-    for (pixel, ((key, prim), (seen_key, seen_prim))) in (0_u32..).zip(spec.zip(other)) {
+    for (place, ((key, prim), (seen_key, seen_prim))) in (0_u32..).zip(spec.zip(other)) {
         judgement.compared += 1;
         if (key, prim) == (seen_key, seen_prim) {
             continue;
         }
-        let cause = match key_at(primitives, *seen_prim, pixel) {
+        let (pixel, s) = (place / samples, place % samples);
+        let cause = match key_at(primitives, *seen_prim, pixel, s) {
             Some(must) if must != *seen_key => Cause::DepthKey,
             Some(_) if key == seen_key => Cause::TieOrder,
             _ => Cause::Coverage,
         };
         judgement.differs(cause, Some(pixel), || {
             let (seen, must) = (surface(*seen_key, *seen_prim), surface(*key, *prim));
-            format!("{} shows {seen}, must show {must}", at(pixel, width))
+            let of = match samples {
+                1 => String::new(),
+                _ => format!(" sample {s}"),
+            };
+            format!("{}{of} shows {seen}, must show {must}", at(pixel, width))
         });
     }
     judgement
 }
 
-/// The spec's key of a triangle at a pixel, if it covers that.
-fn key_at(primitives: &Primitives, prim: u32, pixel: u32) -> Option<u32> {
+/// The spec's key of a triangle at a sample of a pixel, if it covers that.
+fn key_at(primitives: &Primitives, prim: u32, pixel: u32, s: u32) -> Option<u32> {
     let known = (prim as usize) < primitives.prims.len();
     let setup = known.then(|| Setup::new(primitives, prim)).flatten()?;
-    let (width, bits) = (primitives.size.width, primitives.bits);
-    let edges = setup.edges([sample(pixel % width, bits), sample(pixel / width, bits)]);
-    setup.covers(edges).then(|| setup.key(edges))
+    setup.key_at(primitives, pixel, s)
 }
 
 fn surface(key: u32, prim: u32) -> String {

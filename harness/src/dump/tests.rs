@@ -73,6 +73,8 @@ fn scene() -> Scene {
     };
     let identity = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f64::from(u8::from(i == j))));
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: Size {
             width: 4,
             height: 2,

@@ -8,13 +8,14 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::{Sources, WgslError};
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
+use super::part::Part;
 use super::{Cell, Mutant};
 use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
-use crate::registry::{Chain, FAMILIES};
+use crate::registry::Chain;
 use crate::replay::Extent;
-use crate::replay::gpu::{Adapter, From, GpuLeg};
+use crate::replay::gpu::{Adapter, Drawn, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
 use crate::replay::rivals;
@@ -49,17 +50,6 @@ pub(super) struct Setting {
     /// What is compared.
     part: Part,
     bindings: Option<u64>,
-}
-
-/// What of a scene of triangles is compared.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Part {
-    /// The vertex stages.
-    Vertex,
-    /// The stages that start from the spec's triangles.
-    Lists,
-    /// The rivals of the lists.
-    Rivals,
 }
 
 /// A cell, and whether the shipped kernels were asked for it.
@@ -107,15 +97,15 @@ impl Ground {
     /// shipped kernels, or it could die of something else.
     pub(super) fn leg(&self, mutant: &Mutant, adapter: &mut Adapter, path: Path) -> Tried {
         let leg = adapter.label(path);
-        if let Some(reason) = cannot_run(adapter, path) {
-            return Ok((Cell::blank(mutant, leg, reason.into()), None));
+        if let Some(reason) = self.cannot_run(adapter, path) {
+            return Ok((Cell::blank(mutant, leg, reason), None));
         }
         let native = path == Path::Native;
         let sources = mutant.sources(native, || self.twice_the_bound());
         let sources = sources.map_err(|e| e.to_string())?;
         let setting = Setting {
             path,
-            part: touched(&sources, native).map_err(|e| e.to_string())?,
+            part: Part::touched(&sources, native).map_err(|e| e.to_string())?,
             bindings: mutant.bindings,
         };
         if let Some(bytes) = setting.bindings {
@@ -238,6 +228,23 @@ impl Ground {
         Ok(rows.rows)
     }
 
+    /// Why a path has nothing to say of a mutant on this scene.
+    fn cannot_run(&self, adapter: &Adapter, path: Path) -> Option<String> {
+        let samples = self.loaded.scene.samples;
+        match path {
+            Path::Native if adapter.native.is_none() => Some("no 64-bit integers".to_owned()),
+            Path::Fragment if adapter.grid == Grid::Unknown => {
+                Some("the sub-pixel grid is unknown".to_owned())
+            }
+            _ => match adapter.samples(path, samples) {
+                Ok(Drawn::With(found)) if found == samples => None,
+                Ok(Drawn::With(_)) => Some("its samples have places of their own".to_owned()),
+                Ok(Drawn::Not(reason)) => Some(reason),
+                Err(error) => Some(error.to_string()),
+            },
+        }
+    }
+
     /// The least share of a colour by which every colour of a pixel with layers differs
     /// by twice its own bound.
     fn twice_the_bound(&self) -> f64 {
@@ -263,35 +270,4 @@ fn kernels(adapter: &mut Adapter, path: Path) -> &mut Kernels {
         .as_mut()
         .filter(|_| path == Path::Native)
         .unwrap_or(kernels)
-}
-
-fn cannot_run(adapter: &Adapter, path: Path) -> Option<&'static str> {
-    match path {
-        Path::Native if adapter.native.is_none() => Some("no 64-bit integers"),
-        Path::Fragment if adapter.grid == Grid::Unknown => Some("the sub-pixel grid is unknown"),
-        _ => None,
-    }
-}
-
-/// Which stages' kernels are not those that ship: the first of them have the defect.
-fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError> {
-    let shipped = Sources::shipped(native);
-    let differs = |file: &&str| -> Result<bool, WgslError> {
-        Ok(sources.link(file)?.text != shipped.link(file)?.text)
-    };
-    if differs(&"vertex")? {
-        return Ok(Part::Vertex);
-    }
-    for file in ["raster", "abuffer"] {
-        if differs(&file)? {
-            return Ok(Part::Lists);
-        }
-    }
-    let rivals = FAMILIES.iter().find(|family| family.name == "abuffer");
-    for file in rivals.map_or(&[][..], |family| family.files) {
-        if differs(file)? {
-            return Ok(Part::Rivals);
-        }
-    }
-    Ok(Part::Lists)
 }

@@ -31,9 +31,9 @@ impl Asked {
 
     /// A pass for each rival. Nothing of the picture needs it, so that it is left out also
     /// where nothing is skipped.
-    pub(super) fn passes(self, transparent: usize) -> impl Iterator<Item = Pass> {
+    pub(super) fn passes(self, transparent: usize, samples: u32) -> impl Iterator<Item = Pass> {
         RIVALS.into_iter().map(move |name| {
-            let needed = self.needed(name, transparent);
+            let needed = self.needed(name, transparent, samples);
             Pass {
                 name,
                 runs: needed.is_ok(),
@@ -42,8 +42,9 @@ impl Asked {
         })
     }
 
-    fn needed(self, name: &str, transparent: usize) -> Result<String, &'static str> {
+    fn needed(self, name: &str, transparent: usize, samples: u32) -> Result<String, &'static str> {
         match name {
+            _ if samples > 1 => Err("rivals have one sample a pixel"),
             _ if transparent == 0 => Err("no transparent triangles"),
             "density" => {
                 let density = self.density.ok_or("the scene states no density")?;

@@ -1,5 +1,7 @@
 //! Adapters, opened and calibrated.
 
+mod samples;
+
 use std::collections::BTreeMap;
 
 use triptych_gpu::context::{Gpu, adapters, short_name};
@@ -10,6 +12,8 @@ use triptych_gpu::wgsl::Sources;
 
 use super::broken::{Broken, each};
 use crate::calibrate::{Grid, calibrate};
+use samples::Calibrated;
+pub use samples::Drawn;
 
 /// A device, its kernels, and its driver's sub-pixel grid.
 pub struct Adapter {
@@ -21,6 +25,8 @@ pub struct Adapter {
     pub native: Option<Kernels>,
     /// What calibration found.
     pub grid: Grid,
+    /// The samples that calibration found.
+    calibrated: Calibrated,
     /// The user's kernels, which run in place of ours.
     pub foreign: Vec<Foreign>,
 }
@@ -112,6 +118,7 @@ impl Adapter {
             kernels,
             native,
             grid,
+            calibrated: Calibrated::default(),
             foreign: Vec::new(),
         })
     }

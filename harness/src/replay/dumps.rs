@@ -1,5 +1,6 @@
 //! What a replay writes for `--dump`.
 
+use triptych_spec::raster::Samples;
 use triptych_spec::rsm::{Frame, Model};
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
@@ -22,7 +23,12 @@ impl Run<'_> {
         let SpecRun {
             primitives, sorted, ..
         } = &spec.value;
-        leg.meta(&facts::meta(self.loaded, &spec.label, primitives.bits))?;
+        leg.meta(&facts::meta(
+            self.loaded,
+            &spec.label,
+            primitives.bits,
+            primitives.samples,
+        ))?;
         leg.primitives(primitives, &self.loaded.scene)?;
         leg.sorted(&self.loaded.scene, primitives, sorted)?;
         leg.image("resolve", "image", primitives.size, &spec.value.picture())
@@ -37,7 +43,12 @@ impl Run<'_> {
             return Ok(());
         };
         let leg = dump.leg(&self.loaded.name, &seen.label);
-        leg.meta(&facts::meta(self.loaded, &seen.label, spec.primitives.bits))?;
+        leg.meta(&facts::meta(
+            self.loaded,
+            &seen.label,
+            spec.primitives.bits,
+            spec.primitives.samples,
+        ))?;
         leg.primitives(&spec.primitives, &self.loaded.scene)?;
         if let Some(sorted) = &seen.value.sorted {
             leg.sorted(&self.loaded.scene, &spec.primitives, sorted)?;
@@ -80,7 +91,12 @@ impl Run<'_> {
             return Ok(());
         };
         let leg = dump.leg(&self.loaded.name, label);
-        leg.meta(&facts::meta(self.loaded, label, SUBPIXEL_BITS))?;
+        leg.meta(&facts::meta(
+            self.loaded,
+            label,
+            SUBPIXEL_BITS,
+            Samples::ONE,
+        ))?;
         leg.grid(&GridArrays {
             lattice: &spec.lattice,
             axes: &spec.grid.axes,
@@ -115,7 +131,12 @@ impl Run<'_> {
             ..
         } = &spec.value;
         let leg = dump.leg(&self.loaded.name, &spec.label);
-        leg.meta(&facts::meta(self.loaded, &spec.label, spec.value.bits()))?;
+        leg.meta(&facts::meta(
+            self.loaded,
+            &spec.label,
+            spec.value.bits(),
+            Samples::ONE,
+        ))?;
         #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
         let openness: Vec<f32> = openness.iter().map(|o| o.value as f32).collect();
         let picture = spec.value.lit.then(|| rounded(&spec.value.picture()));
@@ -163,7 +184,7 @@ impl Run<'_> {
         };
         let leg = dump.leg(&self.loaded.name, label);
         let run = &spec.value;
-        leg.meta(&facts::meta(self.loaded, label, run.bits()))?;
+        leg.meta(&facts::meta(self.loaded, label, run.bits(), Samples::ONE))?;
         for (number, (turn, made)) in (1..).zip(run.turns.iter().zip(made)) {
             let whole: Vec<u32> = made.open.iter().map(|open| open.whole).collect();
             leg.turn(
@@ -191,7 +212,12 @@ impl Run<'_> {
             return Ok(());
         };
         let leg = dump.leg(&self.loaded.name, label);
-        leg.meta(&facts::meta(self.loaded, label, SUBPIXEL_BITS))?;
+        leg.meta(&facts::meta(
+            self.loaded,
+            label,
+            SUBPIXEL_BITS,
+            Samples::ONE,
+        ))?;
         let Setup {
             lattice,
             eye,

@@ -1,5 +1,7 @@
 //! The Embree leg of one scene.
 
+mod samples;
+
 use std::collections::BTreeSet;
 use std::time::Instant;
 
@@ -16,6 +18,7 @@ use crate::embree::{EmbreeError, EmbreeScene, Hit, RayHits};
 use crate::observe::{Embree, Observed, Spec};
 use crate::row::Class;
 use crate::scene::Loaded;
+pub use samples::run_samples;
 
 /// The row of Embree's vote in world space.
 pub const WORLD: &str = "world";
@@ -111,6 +114,10 @@ pub fn run_world(
     };
     if scene.triangles.is_empty() {
         return skip(rows, "plan: no triangles".to_owned());
+    }
+    if scene.samples.count() > 1 {
+        let reason = "in world space Embree is asked of one sample a pixel".to_owned();
+        return skip(rows, reason);
     }
     if extent == Extent::Small {
         let counts = [scene.triangles.len(), scene.size.pixels()];

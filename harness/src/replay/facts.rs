@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use triptych_spec::abuffer::NOTHING;
+use triptych_spec::raster::{Samples, sample_nodes};
 
 use super::grid::GridRun;
 use super::spec::SpecRun;
@@ -45,21 +46,28 @@ impl Facts {
             .fragments
             .iter()
             .flat_map(|f| [f.pixel, f.prim, f.key, f.mask]);
-        let shown = opaque.prim.iter().filter(|p| **p != NOTHING);
+        let shown = opaque.pixels(primitives.size.pixels());
         let visible = opaque.key.iter().chain(&opaque.prim).copied();
+        let mut counts = vec![
+            (
+                "size",
+                format!("{} x {}", primitives.size.width, primitives.size.height),
+            ),
+            ("triangles", loaded.stats.triangles.to_string()),
+            ("degenerate", loaded.stats.degenerate.to_string()),
+            ("prims", primitives.prims.len().to_string()),
+            ("opaque_pixels", shown.to_string()),
+            ("fragments", sorted.fragments.len().to_string()),
+            ("longest_list", lengths.max().unwrap_or(0).to_string()),
+        ];
+        if primitives.samples.count() > 1 {
+            // What nodes of a sample each would take, beside those with a mask.
+            counts.push(("samples", primitives.samples.count().to_string()));
+            let nodes = sample_nodes(sorted.fragments.iter());
+            counts.push(("sample_nodes", nodes.to_string()));
+        }
         Self {
-            counts: vec![
-                (
-                    "size",
-                    format!("{} x {}", primitives.size.width, primitives.size.height),
-                ),
-                ("triangles", loaded.stats.triangles.to_string()),
-                ("degenerate", loaded.stats.degenerate.to_string()),
-                ("prims", primitives.prims.len().to_string()),
-                ("opaque_pixels", shown.count().to_string()),
-                ("fragments", sorted.fragments.len().to_string()),
-                ("longest_list", lengths.max().unwrap_or(0).to_string()),
-            ],
+            counts,
             runs: runs(passes),
             hashes: BTreeMap::from([
                 ("vertex", hash(snapped.chain(corners))),
@@ -138,14 +146,14 @@ pub(super) fn hash(words: impl Iterator<Item = u32>) -> String {
 }
 
 /// What a dump's arrays do not say themselves.
-pub fn meta(loaded: &Loaded, leg: &str, bits: u32) -> Meta {
+pub fn meta(loaded: &Loaded, leg: &str, bits: u32, samples: Samples) -> Meta {
     Meta {
         scene: loaded.name.clone(),
         leg: leg.into(),
         width: loaded.scene.size.width,
         height: loaded.scene.size.height,
         subpixel_bits: bits,
-        sample_positions: vec![[0.5, 0.5]],
+        sample_positions: samples.positions(),
         versions: BTreeMap::from([("triptych".into(), env!("CARGO_PKG_VERSION").into())]),
     }
 }

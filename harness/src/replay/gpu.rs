@@ -17,7 +17,7 @@ use triptych_gpu::raster::{self, Path, Rasterizer};
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::scene::Scene;
 
-pub use super::adapter::{Adapter, Adapters};
+pub use super::adapter::{Adapter, Adapters, Drawn};
 pub use super::broken::Broken;
 use super::rows::Rows;
 use super::spec::SpecRun;
@@ -112,6 +112,8 @@ impl GpuLeg<'_> {
             opaque: self.plan.opaque,
             lists: self.plan.lists,
             depth_test: self.plan.depth_test,
+            order: self.scene.order,
+            once: self.plan.once,
             background: self.scene.background,
         };
         let inspect = |_: Band, lists: &Lists| certify(lists).longest();

@@ -13,6 +13,7 @@ use std::sync::{Mutex, Weak};
 use std::thread;
 
 use triptych_gpu::raster::Path;
+use triptych_spec::raster::Samples;
 
 use super::gpu::Adapter;
 use super::grid::GridRun;
@@ -45,11 +46,14 @@ impl<'a> Task<'a> {
     }
 }
 
+/// The spec's results, if a lane works with them.
+type Held = Weak<Observed<Spec, SpecRun>>;
+
 /// The spec's results, as long as a lane works with them: they are large.
 #[derive(Default)]
 pub(super) struct Shared {
-    /// By sub-pixel bits.
-    specs: Mutex<BTreeMap<u32, Weak<Observed<Spec, SpecRun>>>>,
+    /// By sub-pixel bits and samples.
+    specs: Mutex<BTreeMap<(u32, Samples), Held>>,
     /// Of a scene with a grid.
     grid: Mutex<Weak<Observed<Spec, GridRun>>>,
     /// Of a scene with indirect light.

@@ -4,8 +4,9 @@ use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 use triptych_gpu::vertex::CLIPPED;
 use triptych_spec::raster::Fragment;
+use triptych_spec::vertex::Primitives;
 
-use super::gpu::{Adapter, Broken, From, GpuLeg, Vertices};
+use super::gpu::{Adapter, Broken, Drawn, From, GpuLeg, Vertices};
 use super::run::Run;
 use super::spec::SpecRun;
 use super::stop::Stop;
@@ -54,8 +55,20 @@ impl Run<'_> {
             self.rows.skip("leg", "spec", &label, Class::Exact, reason);
             return Ok(());
         }
-        let spec = self.spec(adapter.bits(path))?;
         let label = adapter.label(path);
+        let samples = match self.samples(adapter, path) {
+            Ok(Drawn::With(samples)) => samples,
+            Ok(Drawn::Not(reason)) => {
+                self.rows.skip("leg", "spec", &label, Class::Exact, reason);
+                return Ok(());
+            }
+            Err(error) => {
+                self.rows
+                    .fail("leg", "spec", &label, None, error.to_string());
+                return Ok(());
+            }
+        };
+        let spec = self.spec_with(adapter.bits(path), samples)?;
         if self.options.vertex == Vertices::Hardware {
             let (scene, budget) = (&self.loaded.scene, self.vertex_budget());
             if let Err(error) = hardware::run(adapter, path, scene, budget, &mut self.rows) {
@@ -70,6 +83,39 @@ impl Run<'_> {
                 Ok(())
             }
         }
+    }
+
+    /// What an adapter draws this scene's samples with, or why it does not: of several, a
+    /// user's kernel knows nothing, and nobody says how far off a driver's own snapping may be.
+    fn samples(&mut self, adapter: &Adapter, path: Path) -> Result<Drawn, GpuError> {
+        let samples = self.loaded.scene.samples;
+        if samples.count() == 1 {
+            return Ok(Drawn::With(samples));
+        }
+        if self.options.vertex == Vertices::Hardware {
+            let reason = "--vertex hardware judges one sample a pixel".to_owned();
+            return Ok(Drawn::Not(reason));
+        }
+        let of_pixels = ["cover", "opaque", "build", "resolve"];
+        let mut foreign = adapter.foreign.iter();
+        if let Some(foreign) = foreign.find(|f| of_pixels.contains(&f.stage.name)) {
+            let stage = foreign.stage.name;
+            return Ok(Drawn::Not(format!(
+                "{}: a kernel of stage {stage} is held against one sample a pixel",
+                foreign.file
+            )));
+        }
+        let drawn = adapter.samples(path, samples)?;
+        if let Drawn::With(found) = &drawn
+            && *found != samples
+        {
+            let label = adapter.label(path);
+            self.remarks.push(format!(
+                "{label}: samples at {:?}, which is not standard",
+                found.positions()
+            ));
+        }
+        Ok(drawn)
     }
 
     /// Notes what kept a device from a result: a limit is a reason to skip only if the
@@ -169,6 +215,10 @@ impl Run<'_> {
         let Some(own) = own else {
             return Ok(None);
         };
+        let own = Primitives {
+            samples: spec.value.primitives.samples,
+            ..own
+        };
         match SpecRun::new(&self.loaded.scene, own, &self.plan) {
             Ok(run) => Ok(Some(Observed::new("spec", run))),
             Err(message) => {
@@ -189,7 +239,7 @@ impl Run<'_> {
         spec: &Observed<Spec, SpecRun>,
         adapter: &Adapter,
         path: Path,
-    ) -> Result<Option<triptych_spec::vertex::Primitives>, GpuError> {
+    ) -> Result<Option<Primitives>, GpuError> {
         let only_path = self.options.paths.len() == 1;
         let followed = self.options.vertex == Vertices::Gpu;
         let judged = path == Path::Compute || only_path || followed;

@@ -63,7 +63,9 @@ pub fn causes(spec: Option<&Observed<Spec, SpecRun>>, spots: &[Spot]) -> Option<
 /// Layers per pixel: transparent ones, and one for an opaque surface.
 fn layers(spec: &SpecRun) -> Vec<u32> {
     let lists = spec.sorted.offsets.windows(2).map(|w| w[1] - w[0]);
-    let opaque = spec.opaque.prim.iter().map(|p| u32::from(*p != NOTHING));
+    let samples = spec.primitives.samples.count() as usize;
+    let surfaces = spec.opaque.prim.chunks(samples);
+    let opaque = surfaces.map(|prims| u32::from(prims.iter().any(|p| *p != NOTHING)));
     lists
         .zip(opaque)
         .map(|(list, opaque)| list + opaque)

@@ -99,8 +99,9 @@ impl<'a> Run<'a> {
             .extend(causes.filter(|_| self.options.pictures));
         let width = self.loaded.scene.size.width;
         let worst = Worst::of(&self.rows, &self.errors, width);
-        // Lists are what is looked at, which other scenes have none of.
-        if self.options.pictures && self.options.embree && chain == Chain::Frame {
+        // Lists are what is looked at, which other scenes have none of, and those of a ray.
+        let one = self.loaded.scene.samples.count() == 1;
+        if self.options.pictures && self.options.embree && chain == Chain::Frame && one {
             self.look_again(&worst)?;
         }
         self.rows.rows.sort_by_key(column);
@@ -251,6 +252,14 @@ impl<'a> Run<'a> {
         // A bare mesh states no budget: its share is printed, not judged.
         let stated = &self.loaded.file.budget;
         let budget = (!self.loaded.bare).then(|| stated.edge());
+        if self.loaded.scene.samples.count() > 1 {
+            let (scene, shown) = (&self.loaded.scene, self.options.pictures);
+            let picture = embree::run_samples(scene, &spec, budget, shown, &mut self.rows);
+            if let Some(picture) = picture {
+                self.shown("embree", &spec.value, &picture);
+            }
+            return Ok(());
+        }
         let seen = embree::run(&spec, budget, &mut self.rows);
         if let Some((embree, unlike)) = seen.filter(|_| self.options.pictures) {
             let (scene, spec) = (&self.loaded.scene, &spec.value);

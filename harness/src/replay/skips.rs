@@ -1,9 +1,12 @@
 //! Skipping, tested differentially: the same leg with and without it.
 
+use std::borrow::Cow;
+
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{self, Path};
-use triptych_spec::abuffer::Sorted;
+use triptych_spec::abuffer::{Opaque, Sorted, visible};
 use triptych_spec::raster::Fragment;
+use triptych_spec::vertex::Primitives;
 
 use super::gpu::{GpuLeg, GpuSeen};
 use super::rows::Rows;
@@ -56,20 +59,21 @@ pub fn run(
     let label = format!("{} --no-skip", leg.label());
     let full = Observed::<GpuUnskipped, _>::new(label, seen).taking(time);
     let skipped = skipped.map(|s| s).taking(own_time);
-    let width = leg.scene.size.width;
+    let primitives = &leg.spec.value.primitives;
     if skipped.value.sorted.is_none() {
         let reason = "the lists are damaged, see build".to_owned();
         rows.skip("plan", &skipped.label, &full.label, Class::Exact, reason);
         return Ok(None);
     }
-    let judgement = compare(&skipped, &full, |a, b| judge(a, b, width));
+    let judgement = compare(&skipped, &full, |a, b| judge(a, b, primitives));
     rows.add("plan", &skipped, &full, judgement);
     Ok(Some((time.as_secs_f64() - own_time.as_secs_f64()) * 1e3))
 }
 
 /// Equal pictures to the bit, and equal lists once what lies at or behind the
 /// opaque surface is removed.
-fn judge(skipped: &GpuSeen, full: &GpuSeen, width: u32) -> Judgement {
+fn judge(skipped: &GpuSeen, full: &GpuSeen, primitives: &Primitives) -> Judgement {
+    let width = primitives.size.width;
     let mut judgement = Judgement::new(Class::Exact, "pixels");
     let (Some(a), Some(b)) = (&skipped.sorted, &full.sorted) else {
         judge_damage(full, &mut judgement);
@@ -78,12 +82,11 @@ fn judge(skipped: &GpuSeen, full: &GpuSeen, width: u32) -> Judgement {
     let images = skipped.abuffer.image.iter().zip(&full.abuffer.image);
     for (pixel, (x, y)) in (0_u32..).zip(images) {
         judgement.compared += 1;
-        let end = full.abuffer.opaque.key[pixel as usize];
-        let (a, b) = (list(a, pixel), list(b, pixel));
-        let visible = b.iter().take_while(|f| f.key < end).count();
-        if let Some(cause) = difference(a, &b[..visible]) {
+        let opaque = &full.abuffer.opaque;
+        let (a, b) = (list(a, pixel), in_front(primitives, opaque, list(b, pixel)));
+        if let Some(cause) = difference(a, &b) {
             judgement.differs(cause, Some(pixel), || {
-                let (a, b) = (words(a), words(&b[..visible]));
+                let (a, b) = (words(a), words(&b));
                 format!("{} holds {a} with skipping, {b} without", at(pixel, width))
             });
         } else if x.map(f32::to_bits) != y.map(f32::to_bits) {
@@ -94,6 +97,24 @@ fn judge(skipped: &GpuSeen, full: &GpuSeen, width: u32) -> Judgement {
         }
     }
     judgement
+}
+
+/// What of a pixel's list lies in front of the opaque surface: of each fragment the samples that
+/// do, where there are several; else the beginning of the list.
+fn in_front<'f>(
+    primitives: &Primitives,
+    opaque: &Opaque,
+    list: &'f [Fragment],
+) -> Cow<'f, [Fragment]> {
+    if primitives.samples.count() == 1 {
+        let before = |f: &&Fragment| f.key < opaque.key[f.pixel as usize];
+        return Cow::Borrowed(&list[..list.iter().take_while(before).count()]);
+    }
+    let shown = list.iter().map(|f| Fragment {
+        mask: visible(primitives, opaque, f),
+        ..*f
+    });
+    Cow::Owned(shown.filter(|f| f.mask != 0).collect())
 }
 
 /// Why two sorted lists of a pixel differ; `None` if they do not.

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use triptych_spec::abuffer::{self, Lists, NOTHING, Opaque, Sorted};
+use triptych_spec::abuffer::{self, Lists, Opaque, Sorted};
 use triptych_spec::bound::Bounded;
 use triptych_spec::raster::{self, Fragment};
 use triptych_spec::scene::Scene;
@@ -71,16 +71,12 @@ impl SpecRun {
                  replay holds; use a smaller size or fewer triangles"
             ));
         }
-        let pixels = primitives.size.pixels();
         let mut times = Times::default();
         let mut cover = Vec::new();
         if plan.cover {
             times.cover = timed(|| raster::cover(&primitives, |f| cover.push(f))).1;
         }
-        let mut opaque = Opaque {
-            key: vec![NOTHING; pixels],
-            prim: vec![NOTHING; pixels],
-        };
+        let mut opaque = Opaque::nothing(&primitives);
         if plan.opaque {
             (opaque, times.opaque) = timed(|| abuffer::opaque(scene, &primitives));
         }

@@ -3,7 +3,7 @@
 use triptych_gpu::abuffer::{self, Options};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_spec::abuffer::NOTHING;
+use triptych_spec::abuffer::{NOTHING, Order};
 use triptych_spec::rsm::{Model, View};
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
@@ -33,6 +33,8 @@ pub(super) fn visible(
         opaque: true,
         lists: false,
         depth_test: false,
+        order: Order::Centroid,
+        once: false,
         background: [0.0; 3],
     };
     // There are no lists to be followed.

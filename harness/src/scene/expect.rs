@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::Deserialize;
 use toml::Spanned;
-use triptych_spec::abuffer::{NOTHING, Opaque, Sorted};
+use triptych_spec::abuffer::{Opaque, Sorted};
 use triptych_spec::raster::cover;
 use triptych_spec::scene::{Scene, Size};
 use triptych_spec::vertex::Primitives;
@@ -122,7 +122,7 @@ pub fn check(
     let mut wrong = Vec::new();
     let longest = sorted.offsets.windows(2).map(|w| w[1] - w[0]).max();
     let longest = u64::from(longest.unwrap_or(0));
-    let hidden = opaque.prim.iter().filter(|p| **p != NOTHING).count();
+    let hidden = opaque.pixels(primitives.size.pixels());
     let counts = coverage(primitives);
     let covered = counts.iter().map(|c| u64::from(*c)).sum();
     let numbers = [

@@ -5,14 +5,12 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::blending::{Defocus, Density};
+pub use super::abuffer::{Abuffer, LayerOrder, SampleCount};
 use super::expect::Expect;
 use super::grid::Grid;
 use super::ldm::Ldm;
 use super::rsm::{Motion, Rsm};
-use super::value::{
-    Capacity, Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most,
-};
+use super::value::{Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most};
 use crate::generate::Generator;
 
 /// Most lights of a scene: each shines on every triangle.
@@ -29,6 +27,9 @@ pub struct SceneFile {
     pub seed: u64,
     /// Width and height in pixels.
     pub size: ImageSize,
+    /// Samples of a pixel, in their standard places: 1, 2, 4 or 8.
+    #[serde(default)]
+    pub samples: SampleCount,
     /// Linear colour behind everything; black if left out.
     #[serde(default)]
     pub background: Colour,
@@ -248,19 +249,6 @@ impl Default for Hair {
             stride: Self::every(),
         }
     }
-}
-
-/// Options of the A-buffer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Abuffer {
-    /// Nodes of the first attempt; fewer than needed makes it overflow.
-    #[serde(default)]
-    pub capacity: Capacity,
-    /// A medium between the layers; without it stage `density` does not run.
-    pub density: Option<Density>,
-    /// A lens; without it stage `defocus` does not run.
-    pub defocus: Option<Defocus>,
 }
 
 /// Shares of what may go unjudged.

@@ -55,6 +55,8 @@ pub(super) fn flatten(
     let size = parsed.file.size.0;
     let (camera, view) = view(parsed, &placed)?;
     let mut scene = Scene {
+        samples: parsed.file.samples.0,
+        order: parsed.file.abuffer.order.order(),
         size,
         instances: Vec::new(),
         vertices: Vec::new(),

@@ -102,7 +102,7 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     if file.grid.is_none() || file.rsm.is_some() || file.ldm.is_some() {
         return Ok(());
     }
-    let idle = ["camera", "abuffer", "expect", "budget.vertex"];
+    let idle = ["camera", "samples", "abuffer", "expect", "budget.vertex"];
     let stated = idle.into_iter().find(|key| parsed.keys.states(key));
     stated.map_or(Ok(()), |key| {
         let message = "has no effect on a scene with [grid]; leave it out";

@@ -9,7 +9,7 @@ use triptych_spec::ldm::{DIRECTIONS_MAX, RESOLUTION_MAX, RESOLUTION_MIN};
 use triptych_spec::rsm::{OFFSET_MAX, OFFSET_MIN};
 
 use super::Parsed;
-use super::file::{Abuffer, MeshEntry, SceneFile};
+use super::file::{Abuffer, MeshEntry, SampleCount, SceneFile};
 use super::rsm::{Length, Whole};
 use super::sky::SkyEntry;
 use crate::error::InputError;
@@ -150,6 +150,7 @@ fn without_effect(file: &SceneFile) -> Option<&'static str> {
         ("[rsm]", file.rsm.is_some()),
         ("[grid]", file.grid.is_some()),
         ("[[light]]", file.light != SceneFile::default_lights()),
+        ("samples", file.samples != SampleCount::default()),
         ("[abuffer]", file.abuffer != Abuffer::default()),
         ("[expect]", file.expect.stated() > 0),
     ];

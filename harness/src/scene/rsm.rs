@@ -8,7 +8,7 @@ use toml::Spanned;
 use triptych_spec::rsm::{BLUR_MAX, DIVISOR_MAX, OFFSET_MAX, OFFSET_MIN, RADIUS_MAX, STRIDE_MAX};
 
 use super::Parsed;
-use super::file::{Abuffer, CameraEntry, MeshEntry, SceneFile};
+use super::file::{Abuffer, CameraEntry, MeshEntry, SampleCount, SceneFile};
 use super::flatten::PLACEMENT_MAX;
 use super::source::Source;
 use super::value::{Colour, ImageSize, Point};
@@ -271,6 +271,7 @@ fn without_effect(file: &SceneFile) -> Option<&'static str> {
         ("[grid]", file.grid.is_some()),
         ("[ldm]", file.ldm.is_some()),
         ("[[light]]", file.light != SceneFile::default_lights()),
+        ("samples", file.samples != SampleCount::default()),
         ("[abuffer]", file.abuffer != Abuffer::default()),
         ("[expect]", file.expect.stated() > 0),
     ];

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use triptych_gpu::abuffer::BandResult;
-use triptych_spec::abuffer::{NOTHING, Sorted};
+use triptych_spec::abuffer::Sorted;
 use triptych_spec::scene::Scene;
 
 use super::spec::{exact, list};
-use super::{Entry, GPU_BYTES, Kind, Pixel, Sheet, pack, source};
+use super::{Entry, GPU_BYTES, Kind, Pixel, Sheet, pack, source, surfaces};
 use crate::compare::fragments::at;
 use crate::compare::lists::{Certificate, Fault, certify};
 use crate::replay::gpu::GpuSeen;
@@ -189,21 +189,22 @@ impl Seen<'_> {
             kind: Kind::Astray,
             ..blank(u32::MAX)
         }));
-        let opaque = &self.seen.abuffer.opaque;
-        let surface = |of: &[u32]| of.get(pixel as usize).copied().filter(|n| *n != NOTHING);
-        if let (Some(prim), Some(key)) = (surface(&opaque.prim), surface(&opaque.key)) {
-            list.push(Entry {
-                key,
+        let samples = self.spec.primitives.samples.count();
+        let surfaces = surfaces(&self.seen.abuffer.opaque, samples, pixel);
+        list.extend(surfaces.iter().map(|f| {
+            Entry {
+                key: f.key,
+                mask: f.mask,
                 kind: Kind::Opaque,
                 colour: self
                     .spec
                     .faces
-                    .get(prim as usize)
+                    .get(f.prim as usize)
                     .copied()
                     .unwrap_or_default(),
-                ..blank(prim)
-            });
-        }
+                ..blank(f.prim)
+            }
+        }));
         list
     }
 }

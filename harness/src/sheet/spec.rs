@@ -4,7 +4,7 @@ use triptych_spec::abuffer::NOTHING;
 use triptych_spec::raster::Fragment;
 use triptych_spec::scene::{Scene, Size};
 
-use super::{Entry, Kind, Pixel, SPEC_BYTES, Sheet, pack, source};
+use super::{Entry, Kind, Pixel, SPEC_BYTES, Sheet, pack, source, surfaces};
 use crate::replay::spec::SpecRun;
 
 /// Entries that are packed at most; they take four to eight bytes each.
@@ -13,8 +13,12 @@ const ENTRIES: u64 = 120_000;
 /// The spec's lists, each with the opaque surface behind it.
 pub fn spec(scene: &Scene, run: &SpecRun, leg: &str) -> Sheet {
     let size = run.primitives.size;
-    let has =
-        |pixel: usize| !run.sorted.list(pixel).is_empty() || run.opaque.prim[pixel] != NOTHING;
+    let samples = run.primitives.samples.count() as usize;
+    let shows = |pixel: usize| {
+        let mut prims = run.opaque.prim[samples * pixel..][..samples].iter();
+        prims.any(|prim| *prim != NOTHING)
+    };
+    let has = |pixel: usize| !run.sorted.list(pixel).is_empty() || shows(pixel);
     let with_entries = (0..size.pixels()).filter(|p| has(*p)).count() as u64;
     let entries = run.sorted.fragments.len() as u64 + with_entries;
     let mut stride = stride(entries, ENTRIES);
@@ -77,18 +81,8 @@ pub(super) fn list(
     };
     let fragments = run.sorted.list(pixel as usize).iter();
     let mut list: Vec<Entry> = fragments.map(|f| entry(f, Kind::Listed)).collect();
-    let (prim, key) = (
-        run.opaque.prim[pixel as usize],
-        run.opaque.key[pixel as usize],
-    );
-    let mask = 0;
-    let surface = Fragment {
-        pixel,
-        prim,
-        key,
-        mask,
-    };
-    list.extend((prim != NOTHING).then(|| entry(&surface, Kind::Opaque)));
+    let surfaces = surfaces(&run.opaque, run.primitives.samples.count(), pixel);
+    list.extend(surfaces.iter().map(|f| entry(f, Kind::Opaque)));
     list
 }
 

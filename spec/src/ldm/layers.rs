@@ -2,7 +2,7 @@
 
 use super::{LdmError, Maps, within};
 use crate::grid::Blockers;
-use crate::raster::{Fragment, cover};
+use crate::raster::{Fragment, Samples, cover};
 use crate::scene::Size;
 use crate::vertex::Primitives;
 
@@ -90,6 +90,7 @@ impl<'m> Drawn<'m> {
                     height: 0,
                 },
                 bits: maps.bits,
+                samples: Samples::ONE,
                 snapped: Vec::new(),
                 prims: blockers.triangles.clone(),
                 source: Vec::new(),

@@ -2,11 +2,13 @@
 
 use super::parameters::within;
 use super::{Model, RsmError};
+use crate::abuffer::Order;
 use crate::camera::{Camera, Projection};
 use crate::grid::exact::minus;
 use crate::grid::lattice::{Lattice, Point};
 use crate::grid::ray::Ray;
 use crate::matrix::Matrix;
+use crate::raster::Samples;
 use crate::scene::{Scene, Size, Triangle, Vertex};
 use crate::vertex::TARGET_MAX;
 
@@ -102,6 +104,8 @@ impl View {
         let triangles = model.triangles.iter().zip(&model.colours);
         Scene {
             size: self.size,
+            samples: Samples::ONE,
+            order: Order::Centroid,
             instances: vec![self.matrix],
             vertices: model.vertices.iter().map(vertex).collect(),
             triangles: (0..).zip(triangles).map(triangle).collect(),

@@ -18,6 +18,7 @@ type Channel = Vec<[f32; 2]>;
 fn pixel(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {
     let rows = 0..u32::try_from(layers.len()).expect("few layers");
     let primitives = Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: Size {
             width: 1,
             height: 1,

@@ -6,6 +6,7 @@ use triptych_spec::abuffer::{
     nearest_layers, peel, resolve, sort, weighted,
 };
 use triptych_spec::bound::Bounded;
+use triptych_spec::raster::Samples;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
 
@@ -25,6 +26,7 @@ fn stack(layers: &[(i32, [f32; 4])], background: [f32; 3]) -> Layers {
             height: 1,
         },
         bits: 8,
+        samples: Samples::default(),
         snapped: layers.iter().flat_map(|(key, _)| corners(*key)).collect(),
         prims: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         source: (0..count).collect(),
@@ -342,6 +344,7 @@ fn circles_keep_light() {
         let primitives = Primitives {
             size,
             bits: 8,
+            samples: Samples::default(),
             snapped: corners(x, y).to_vec(),
             prims: vec![[0, 1, 2], [1, 3, 2]],
             source: vec![0, 1],

@@ -25,6 +25,7 @@ proptest! {
         prop_assert_eq!(*layers.offsets.last().unwrap() as usize, layers.keys.len());
         for map in &maps.maps {
             let drawn = Primitives {
+                samples: triptych_spec::raster::Samples::ONE,
                 size: map.size,
                 bits: maps.bits,
                 snapped: mesh.vertices.iter().map(|v| maps.place(map, *v)).collect(),

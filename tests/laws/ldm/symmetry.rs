@@ -148,6 +148,7 @@ fn is_clear(
     let [x, y, key] = maps.place(map, receiver.point);
     let pixel = [x, y].map(|c| (c >> maps.bits).cast_unsigned());
     let drawn = Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: map.size,
         bits: maps.bits,
         snapped: mesh.vertices.iter().map(|v| maps.place(map, *v)).collect(),

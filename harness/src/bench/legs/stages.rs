@@ -143,6 +143,13 @@ fn prepared<'s>(
             refuse(&label, "the driver's sub-pixel grid is unknown".to_owned());
             continue;
         }
+        if scene.samples.count() > 1 {
+            refuse(
+                &label,
+                "frames of one sample a pixel are timed alone".to_owned(),
+            );
+            continue;
+        }
         let work = Work::new(scene, adapter.bits(path));
         let (gpu, kernels) = (&adapter.gpu, &station.kernels);
         match Rasterizer::new(gpu, kernels, path, &work.primitives, &work.faces) {

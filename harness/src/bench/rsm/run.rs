@@ -188,6 +188,8 @@ mod tests {
         assert_eq!([size.width, size.height], [1024, 768]);
         let small = crate::scene::Loaded {
             scene: triptych_spec::scene::Scene {
+                samples: triptych_spec::raster::Samples::ONE,
+                order: triptych_spec::abuffer::Order::Centroid,
                 size: triptych_spec::scene::Size {
                     width: 32,
                     height: 24,

@@ -52,6 +52,7 @@ mod tests {
     #[test]
     fn without_area_edge_functions_sum_to_nothing() {
         let spec = Primitives {
+            samples: triptych_spec::raster::Samples::ONE,
             size: Size {
                 width: 1,
                 height: 1,

@@ -39,6 +39,7 @@ impl Random {
 fn scene(side: u32, triangles: &[[[i32; 3]; 3]]) -> Primitives {
     let rows: Vec<u32> = (0_u32..).zip(triangles).map(|(row, _)| row).collect();
     Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: Size {
             width: side,
             height: side,

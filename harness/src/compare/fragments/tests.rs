@@ -86,6 +86,7 @@ fn without_fragments_the_pixels_are_what_is_empty() {
 fn beside_a_column() -> (Primitives, Vec<Fragment>) {
     let edge = 2 * 256 + 128 + 1; // one sub-pixel right of the samples of column 2
     let primitives = Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: SIZE,
         bits: 8,
         snapped: vec![[edge, -8192, 5], [edge, 8192, 5], [-16384, 0, 5]],

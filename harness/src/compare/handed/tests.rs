@@ -39,6 +39,8 @@ fn scene() -> Scene {
         colour: [0.0; 4],
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: SIZE,
         instances: vec![Matrix::IDENTITY],
         vertices: triangles.into_iter().flatten().map(vertex).collect(),

@@ -28,6 +28,7 @@ fn run(moved: [i32; 2], key: Option<u32>, opaque: u32) -> Run {
     let fragments: Vec<Fragment> = key.map(fragment).into_iter().collect();
     Run {
         primitives: Primitives {
+            samples: triptych_spec::raster::Samples::ONE,
             size: Size {
                 width: 1,
                 height: 1,

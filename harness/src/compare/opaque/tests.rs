@@ -14,6 +14,7 @@ fn primitives() -> Primitives {
     let one = [[0, 256, 4], [300, 256, 4], [0, 556, 4]];
     let corners = [all(7), all(7), all(9), outside, [[0, 0, 1]; 3], one];
     Primitives {
+        samples: triptych_spec::raster::Samples::ONE,
         size: Size {
             width: 2,
             height: 2,
@@ -101,6 +102,44 @@ fn surfaces_of_another_size_are_not_compared() {
 
 #[test]
 fn a_key_is_that_of_the_pixel() {
-    let seen = [0, 1, 2, 3].map(|pixel| key_at(&primitives(), 5, pixel));
+    let seen = [0, 1, 2, 3].map(|pixel| key_at(&primitives(), 5, pixel, 0));
     assert_eq!(seen, [None, None, Some(4), None]);
+}
+
+/// With four samples a pixel, every one of them is compared, and named.
+#[test]
+fn surfaces_of_samples_are_told_apart() {
+    let primitives = Primitives {
+        samples: triptych_spec::raster::Samples::standard(4).expect("a pattern"),
+        ..primitives()
+    };
+    let must = Opaque {
+        key: vec![7; 16],
+        prim: vec![0; 16],
+    };
+    let mut seen = must.clone();
+    seen.prim[4 + 3] = 1;
+    seen.key[2 * 4] = 9;
+    let judgement = compare(&must, &seen, &primitives);
+    assert_eq!((judgement.compared, judgement.unit), (16, "samples"));
+    let marks: Vec<u32> = judgement.marks.iter().map(|mark| mark.0).collect();
+    assert_eq!(marks, [1, 2], "pixels");
+    let words = [
+        "tie-order: pixel (1, 0) sample 3 shows triangle row 1 at key 7, \
+         must show triangle row 0 at key 7",
+        "depth-key: pixel (0, 1) sample 0 shows triangle row 0 at key 9, \
+         must show triangle row 0 at key 7",
+    ];
+    assert_eq!(judgement.described, words);
+}
+
+/// The corner pixel's triangle has its longest edge through the pixel: two samples of four.
+#[test]
+fn a_key_is_that_of_the_sample() {
+    let primitives = Primitives {
+        samples: triptych_spec::raster::Samples::standard(4).expect("a pattern"),
+        ..primitives()
+    };
+    let seen = [0, 1, 2, 3].map(|s| key_at(&primitives, 5, 2, s));
+    assert_eq!(seen, [Some(4), None, Some(4), None]);
 }

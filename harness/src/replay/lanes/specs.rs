@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use triptych_spec::vertex;
+use triptych_spec::raster::Samples;
+use triptych_spec::vertex::{self, Primitives};
 
 use crate::observe::{Observed, Spec};
 use crate::replay::grid::GridRun;
@@ -14,35 +15,49 @@ use crate::replay::stop::Stop;
 use crate::scene::Mistake;
 
 impl Run<'_> {
-    /// The spec's results on a grid, computed when first asked for. Only the last grid's are
-    /// held: they are large.
+    /// The spec's results on a grid with the scene's samples, computed when first asked for. Only
+    /// the last grid's are held: they are large.
     pub(in crate::replay) fn spec(
         &mut self,
         bits: u32,
     ) -> Result<Arc<Observed<Spec, SpecRun>>, Stop> {
+        self.spec_with(bits, self.loaded.scene.samples)
+    }
+
+    /// The same with samples in these places.
+    pub(in crate::replay) fn spec_with(
+        &mut self,
+        bits: u32,
+        samples: Samples,
+    ) -> Result<Arc<Observed<Spec, SpecRun>>, Stop> {
         let held = self.spec.as_ref();
-        if let Some(spec) = held.filter(|s| s.value.primitives.bits == bits) {
+        let is = |p: &Primitives| (p.bits, p.samples) == (bits, samples);
+        if let Some(spec) = held.filter(|s| is(&s.value.primitives)) {
             return Ok(spec.clone());
         }
         self.spec = None;
         let shared = self.shared.clone();
         // A lane that asks for what another is at waits for it.
         let mut specs = locked(&shared.specs);
-        let known = specs.get(&bits).and_then(Weak::upgrade);
+        let known = specs.get(&(bits, samples)).and_then(Weak::upgrade);
         let spec = match known {
             Some(spec) => spec,
-            None => Arc::new(self.new_spec(bits)?),
+            None => Arc::new(self.new_spec(bits, samples)?),
         };
-        specs.insert(bits, Arc::downgrade(&spec));
+        specs.insert((bits, samples), Arc::downgrade(&spec));
         self.spec = Some(spec.clone());
         Ok(spec)
     }
 
-    fn new_spec(&self, bits: u32) -> Result<Observed<Spec, SpecRun>, Stop> {
+    fn new_spec(&self, bits: u32, samples: Samples) -> Result<Observed<Spec, SpecRun>, Stop> {
         let scene = &self.loaded.scene;
         let (positions, transform) = timed(|| vertex::transform(scene));
         let (polygons, clip) = timed(|| vertex::clip(scene, &positions));
         let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
+        let primitives = Primitives {
+            samples,
+            ..primitives
+        };
         let mut run = SpecRun::new(scene, primitives, &self.plan)
             .map_err(|words| Stop::Input(words.into()))?;
         run.times = Times {

@@ -35,6 +35,8 @@ pub fn layers(size: [u32; 2], keys: &[(f32, f32)]) -> Scene {
     };
     let identity = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f64::from(u8::from(i == j))));
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: Size { width, height },
         instances: vec![Matrix { rows: identity }],
         vertices: keys.iter().flat_map(|(z, _)| at(*z)).collect(),

@@ -36,6 +36,8 @@ fn placed(camera: Camera, world: Matrix, vertices: &[[f64; 3]], faces: &[[u32; 3
         colour: [1.0; 4],
     };
     Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: SIZE,
         instances: vec![clip.times(&world)],
         vertices: vertices.iter().map(vertex).collect(),

@@ -27,6 +27,8 @@ fn scene() -> (Blockers, Scene) {
         colour,
     };
     let scene = Scene {
+        samples: triptych_spec::raster::Samples::ONE,
+        order: triptych_spec::abuffer::Order::Centroid,
         size: Size {
             width: 8,
             height: 8,
