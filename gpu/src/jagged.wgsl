@@ -150,7 +150,7 @@ fn draw_spot(prim: u32, sample: vec2<i32>, fill: bool) {
         if covers(own, at) {
             var key = 0u;
             if fill || frame.depth_test != 0u {
-                key = key_at(own, plane_of(s, sample), at);
+                key = sample_key(own, plane_of(s, sample), at);
             }
             store(u32(at.y) * SIDE + u32(at.x), key, prim, fill);
         }
@@ -161,7 +161,7 @@ fn draw_spot(prim: u32, sample: vec2<i32>, fill: bool) {
 fn keep(i: u32, lane: u32, at: vec2<i32>, fill: bool) {
     var key = 0u;
     if fill || frame.depth_test != 0u {
-        key = key_at(edges[i], planes[i], at);
+        key = sample_key(edges[i], planes[i], at);
     }
     store(lane, key, edges[i].prim, fill);
 }

@@ -126,7 +126,7 @@ fn covers(edges: Edges, at: vec2<i32>) -> bool {
 }
 
 // The depth key at a covered sample.
-fn key_at(edges: Edges, plane: Plane, at: vec2<i32>) -> u32 {
+fn sample_key(edges: Edges, plane: Plane, at: vec2<i32>) -> u32 {
     let change = edges.columns * at.x + edges.rows * at.y;
     return depth_key(
         plane.z,

@@ -11,6 +11,7 @@
 //! | [`vertex`] | transform, clip, snap | `gpu/src/vertex.wgsl` |
 //! | [`raster`] | cover | `gpu/src/raster.wgsl` |
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
+//! | | peel, dual, alpha, weighted, density, defocus | `gpu/src/peel.wgsl` and so on |
 //! | [`tiles`] | bin, jagged, shade | `gpu/src/tiles.wgsl` |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 //! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |

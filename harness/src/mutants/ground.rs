@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::kernel::{Fault, Kernels};
 use triptych_gpu::raster::Path;
-use triptych_gpu::wgsl::{Sources, WgslError};
+use triptych_gpu::wgsl::Sources;
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::part::Part;

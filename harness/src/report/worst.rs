@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 36] = [
+const ORDER: [&str; 42] = [
     "leg",
     "all",
     "expect",
@@ -23,6 +23,12 @@ const ORDER: [&str; 36] = [
     "build",
     "sort",
     "resolve",
+    "peel",
+    "dual",
+    "alpha",
+    "weighted",
+    "density",
+    "defocus",
     "bin",
     "jagged",
     "shade",
