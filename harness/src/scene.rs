@@ -28,7 +28,7 @@ use crate::corpus::{self, Entry};
 use crate::error::InputError;
 use crate::mesh::Intake;
 use crate::text::{self, hex};
-use file::{LayerOrder, SceneFile};
+use file::SceneFile;
 pub use mistake::{Lines, Mistake};
 use sky::Sky;
 use world::World;
@@ -269,9 +269,8 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
             },
         }
     })?;
-    // Other families are judged where they are read, and a bare mesh has no lines.
     let others = file.grid.is_some() || file.rsm.is_some() || file.ldm.is_some();
-    let keys = match others || file.abuffer.order == LayerOrder::Sample {
+    let keys = match others || abuffer::is_judged_later(&file) {
         true => Lines::new(text, |at| line_of(&lines, at)),
         false => Lines::default(),
     };

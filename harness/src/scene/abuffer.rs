@@ -61,6 +61,11 @@ impl LayerOrder {
     }
 }
 
+/// Whether something is judged where other families are, with its line.
+pub(super) fn is_judged_later(file: &super::file::SceneFile) -> bool {
+    file.abuffer.order == LayerOrder::Sample
+}
+
 /// Refuses an order of layers for each sample where there is one.
 pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     let file = &parsed.file;
