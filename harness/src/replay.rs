@@ -21,6 +21,7 @@ mod placed;
 pub mod rows;
 pub mod rsm;
 mod run;
+mod sampled;
 mod shown;
 pub mod skips;
 pub mod spec;
