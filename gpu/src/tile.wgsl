@@ -51,7 +51,7 @@ fn pixel_of(tile: u32, lane: u32) -> u32 {
 // The sample of a tile's first pixel, in sub-pixels.
 fn first_sample(tile: u32) -> vec2<i32> {
     let pixel = origin_of(tile);
-    return vec2(sample_at(pixel.x), sample_at(pixel.y + frame.first_row));
+    return sample_at(pixel.x, pixel.y + frame.first_row, 0u);
 }
 
 // A triangle as a tile sees it: edge functions at the first sample, less the least of a covered one,

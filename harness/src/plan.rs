@@ -108,17 +108,9 @@ impl Plan {
                 (false, _) => "nothing is skipped: hidden fragments are stored".into(),
             },
         });
-        let once = skip && samples > 1;
-        if samples > 1 {
-            passes.push(Pass {
-                name: ONCE,
-                runs: once,
-                reason: match once {
-                    true => format!("pixels whose {samples} samples are alike are shaded once"),
-                    false => "nothing is skipped: every sample is shaded".into(),
-                },
-            });
-        }
+        let shading = shading(scene, skip);
+        let once = shading.as_ref().is_some_and(|pass| pass.runs);
+        passes.extend(shading);
         Self {
             passes,
             once,
@@ -152,6 +144,19 @@ fn by_tiles(transparent: usize, samples: u32, skip: bool) -> impl Iterator<Item 
             runs: samples < 2 && (transparent > 0 || !skip),
             reason: reason(),
         })
+}
+
+/// Whether pixels whose samples are all alike are shaded once; `None` with one sample a pixel.
+fn shading(scene: &Scene, skip: bool) -> Option<Pass> {
+    let samples = scene.samples.count();
+    (samples > 1).then(|| Pass {
+        name: ONCE,
+        runs: skip,
+        reason: match skip {
+            true => format!("pixels whose {samples} samples are alike are shaded once"),
+            false => "nothing is skipped: every sample is shaded".into(),
+        },
+    })
 }
 
 /// What a scene needs.

@@ -22,6 +22,7 @@ pub mod rivals;
 pub mod rows;
 pub mod rsm;
 mod run;
+mod sampled;
 mod shown;
 pub mod skips;
 pub mod spec;

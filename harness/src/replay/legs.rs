@@ -11,7 +11,7 @@ use super::run::Run;
 use super::spec::SpecRun;
 use super::stop::Stop;
 use super::vertex::{self, VertexLeg};
-use super::{Options, end_to_end, hardware, own_vertices, rivals, skips};
+use super::{end_to_end, hardware, own_vertices, rivals, skips};
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
@@ -83,39 +83,6 @@ impl Run<'_> {
                 Ok(())
             }
         }
-    }
-
-    /// What an adapter draws this scene's samples with, or why it does not: of several, a
-    /// user's kernel knows nothing, and nobody says how far off a driver's own snapping may be.
-    fn samples(&mut self, adapter: &Adapter, path: Path) -> Result<Drawn, GpuError> {
-        let samples = self.loaded.scene.samples;
-        if samples.count() == 1 {
-            return Ok(Drawn::With(samples));
-        }
-        if self.options.vertex == Vertices::Hardware {
-            let reason = "--vertex hardware judges one sample a pixel".to_owned();
-            return Ok(Drawn::Not(reason));
-        }
-        let of_pixels = ["cover", "opaque", "build", "resolve"];
-        let mut foreign = adapter.foreign.iter();
-        if let Some(foreign) = foreign.find(|f| of_pixels.contains(&f.stage.name)) {
-            let stage = foreign.stage.name;
-            return Ok(Drawn::Not(format!(
-                "{}: a kernel of stage {stage} is held against one sample a pixel",
-                foreign.file
-            )));
-        }
-        let drawn = adapter.samples(path, samples)?;
-        if let Drawn::With(found) = &drawn
-            && *found != samples
-        {
-            let label = adapter.label(path);
-            self.remarks.push(format!(
-                "{label}: samples at {:?}, which is not standard",
-                found.positions()
-            ));
-        }
-        Ok(drawn)
     }
 
     /// Notes what kept a device from a result: a limit is a reason to skip only if the
@@ -261,15 +228,6 @@ impl Run<'_> {
     /// A bare mesh states no budgets.
     fn vertex_budget(&self) -> Option<f64> {
         (!self.loaded.bare).then_some(self.loaded.file.budget.vertex.0)
-    }
-
-    /// From a later stage on than coverage, the spec's lists are given: nothing is skipped.
-    pub(super) fn tests_skipping(&self, adapter: &Adapter, path: Path) -> bool {
-        let Options {
-            skip, from, paths, ..
-        } = self.options;
-        let turn = skips::turn(&self.loaded.name, &adapter.gpu.name, paths);
-        *skip && *from == From::Cover && turn == Some(path)
     }
 
     fn capacity(&self, spec: &SpecRun) -> Option<u32> {
