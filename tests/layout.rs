@@ -204,8 +204,8 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 54,
-        "three functions in nine programs of two forms each"
+        seen, 72,
+        "three functions in twelve programs of two forms each"
     );
 }
 

@@ -3,17 +3,17 @@
 //#import jagged
 
 // An entry of one of the longest lists.
-struct Place {
+struct Deep {
     at: u32,
     start: u32,
     end: u32,
 }
 
-fn long_entry(group: u32, lane: u32) -> Place {
+fn long_entry(group: u32, lane: u32) -> Deep {
     let list = longest.lists[group / tiled.groups];
     let run = run_at(list / WORKGROUP, list % WORKGROUP);
     let at = run.start + group % tiled.groups * WORKGROUP + lane;
-    return Place(at, run.start, run.start + run.length);
+    return Deep(at, run.start, run.start + run.length);
 }
 
 // A pixel, its list, and the key of what is opaque there.

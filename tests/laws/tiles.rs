@@ -92,8 +92,9 @@ proptest! {
                 prop_assert!(bins.bin(tile as usize).contains(&fragment.prim));
             }
         }
-        for tile in 0..bins.tiles() {
-            let (x, y) = (tile as u32 % bins.across * SIDE, rows.start + tile as u32 / bins.across * SIDE);
+        for (number, tile) in (0_u32..).zip(0..bins.tiles()) {
+            let x = number % bins.across * SIDE;
+            let y = rows.start + number / bins.across * SIDE;
             let bin = bins.bin(tile);
             prop_assert!(bin.windows(2).all(|pair| pair[0] < pair[1]), "rising");
             for &prim in bin {

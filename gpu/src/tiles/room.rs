@@ -277,8 +277,8 @@ impl<'r, 'g> Room<'r, 'g> {
                 passes.push(self.pass(entry, short, self.tiles)?);
             }
         }
-        let long = (length > ROWS).then_some(0..length).unwrap_or_default();
-        for first in long.step_by(STEPS as usize) {
+        let long = if length > ROWS { length } else { 0 };
+        for first in (0..long).step_by(STEPS as usize) {
             let tiled = Tiled {
                 first,
                 count: STEPS,
