@@ -27,6 +27,7 @@ mod shown;
 pub mod skips;
 pub mod spec;
 mod stop;
+pub mod tiles;
 pub mod vertex;
 mod visible;
 pub mod work;

@@ -12,7 +12,7 @@ use triptych_harness::plan::{Asked, Plan};
 use triptych_harness::replay::gpu::{Adapter, Adapters, Drawn, From, GpuLeg};
 use triptych_harness::replay::rows::Rows;
 use triptych_harness::replay::spec::SpecRun;
-use triptych_harness::replay::{Extent, rivals};
+use triptych_harness::replay::{Extent, rivals, tiles};
 use triptych_harness::row::Verdict;
 use triptych_spec::abuffer::{Lens, Order, Target};
 use triptych_spec::raster::Samples;
@@ -74,8 +74,9 @@ fn agrees(layers: &Layers, adapter: &Adapter, path: Path, skip: bool) -> Result<
         from: From::Cover,
     };
     let mut rows = Rows::new("law", "abuffer");
-    leg.run(&mut rows)
-        .map_err(|e| TestCaseError::fail(e.to_string()))?;
+    let failed = |e: GpuError| TestCaseError::fail(e.to_string());
+    leg.run(&mut rows).map_err(failed)?;
+    tiles::run(&leg, Extent::All, &mut rows).map_err(failed)?;
     let words = || rows.described.join("\n");
     for row in &rows.rows {
         // Triangles at random may cover nothing.

@@ -22,6 +22,7 @@ use crate::replay::rivals;
 use crate::replay::rows::Rows;
 use crate::replay::rsm::{RsmLeg, RsmRun};
 use crate::replay::spec::SpecRun;
+use crate::replay::tiles;
 use crate::replay::vertex::VertexLeg;
 use crate::row::{Row, Verdict};
 use crate::scene::value::Capacity;
@@ -223,6 +224,7 @@ impl Ground {
         };
         match part {
             Part::Rivals => rivals::run(&leg, Extent::All, &mut rows)?,
+            Part::Tiles => tiles::run(&leg, Extent::All, &mut rows)?,
             _ => drop(leg.run(&mut rows)?),
         }
         Ok(rows.rows)

@@ -13,6 +13,8 @@ pub(super) enum Part {
     Lists,
     /// The rivals of the lists.
     Rivals,
+    /// The lists by tiles.
+    Tiles,
 }
 
 impl Part {
@@ -36,6 +38,9 @@ impl Part {
                 return Ok(Self::Rivals);
             }
         }
-        Ok(Self::Lists)
+        match differs(&"tiles")? {
+            true => Ok(Self::Tiles),
+            false => Ok(Self::Lists),
+        }
     }
 }

@@ -4,7 +4,6 @@ mod from;
 mod judge;
 mod lists;
 mod path_name;
-mod tiles;
 mod vertices;
 
 use std::borrow::Cow;
@@ -90,7 +89,6 @@ impl GpuLeg<'_> {
         self.judge_lists(&seen, rows);
         self.judge_sort(&seen, rows);
         self.judge_resolve(&seen, rows);
-        self.tiles(&rasterizer, rows)?;
         Ok(seen)
     }
 

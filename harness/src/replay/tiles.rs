@@ -8,11 +8,17 @@ use triptych_spec::abuffer::Sorted;
 use triptych_spec::raster::Fragment;
 use triptych_spec::tiles::bin;
 
-use super::{From, GpuLeg};
+use wgpu::DeviceType;
+
+use super::Extent;
+use super::gpu::{From, GpuLeg};
+use super::rows::Rows;
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
-use crate::replay::rows::Rows;
 use crate::row::Class;
+
+/// Most triangles and fragments that a software driver's words are asked for by default.
+const WORK_MAX: u64 = 1 << 18;
 
 /// The stages, and how each is compared.
 const STAGES: [(&str, Class); 3] = [
@@ -21,25 +27,46 @@ const STAGES: [(&str, Class); 3] = [
     ("shade", Class::Interval),
 ];
 
+/// Adds rows for the stages, which start from the spec's triangles and opaque surfaces. They have no twin
+/// on the fragment path.
+///
+/// # Errors
+/// Whatever the device reports.
+pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuError> {
+    if leg.path == Path::Fragment {
+        return Ok(());
+    }
+    let mut skipped = false;
+    for (stage, class) in STAGES {
+        if let Some(reason) = reason_not_run(leg, extent, stage) {
+            rows.skip(stage, &leg.spec.label, &leg.label(), class, reason);
+            skipped = true;
+        }
+    }
+    match skipped {
+        true => Ok(()),
+        false => leg.tiles(&leg.rasterizer()?, rows),
+    }
+}
+
+/// Why the stages do not run on a leg. Software drivers take their time over 64-bit integers made of
+/// words: large scenes are drawn on native ones.
+fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, stage: &str) -> Option<String> {
+    let spec = &leg.spec.value;
+    let work = (spec.primitives.prims.len() + spec.sorted.fragments.len()) as u64;
+    let is_slow = leg.path == Path::Compute && leg.adapter.gpu.info.device_type == DeviceType::Cpu;
+    let planned = leg.plan.skipped(stage);
+    planned.or_else(|| match extent {
+        _ if leg.from > From::Build => Some(From::GIVEN.to_owned()),
+        Extent::Small if is_slow && work > WORK_MAX => {
+            Some("of a scene of its size only if asked for: --rivals".to_owned())
+        }
+        _ => None,
+    })
+}
+
 impl GpuLeg<'_> {
-    /// Runs the stages on the spec's triangles and opaque surfaces, and adds a row for each. They have
-    /// no twin on the fragment path.
-    pub(super) fn tiles(
-        &self,
-        rasterizer: &Rasterizer<'_>,
-        rows: &mut Rows,
-    ) -> Result<(), GpuError> {
-        if self.path == Path::Fragment {
-            return Ok(());
-        }
-        for (stage, class) in STAGES {
-            if let Some(reason) = self.reason_not_run(stage, From::Build) {
-                rows.skip(stage, &self.spec.label, &self.label(), class, reason);
-            }
-        }
-        if self.reason_not_run("jagged", From::Build).is_some() {
-            return Ok(());
-        }
+    fn tiles(&self, rasterizer: &Rasterizer<'_>, rows: &mut Rows) -> Result<(), GpuError> {
         let options = tiles::Options {
             opaque: &self.spec.value.opaque,
             depth_test: self.plan.depth_test,
