@@ -231,7 +231,8 @@ fn more_layers_are_nearer_to_all() {
         // The nearest may be invisible.
         let falls = errors.windows(2).all(|pair| pair[1] <= pair[0]);
         assert!(falls, "{}: {errors:?}", entry.name);
-        assert!(errors[6] < errors[0], "{}: {errors:?}", entry.name);
+        let gone = errors[0] == 0.0 || errors[6] < errors[0];
+        assert!(gone, "{}: {errors:?}", entry.name);
         seen += 1;
     }
     assert!(seen > 15, "{seen} scenes are not the corpus");

@@ -1,23 +1,25 @@
 //! A scene on which mutants run, once the shipped kernels agree there.
 
+mod part;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use triptych_gpu::error::GpuError;
 use triptych_gpu::kernel::{Fault, Kernels};
 use triptych_gpu::raster::Path;
-use triptych_gpu::wgsl::{Sources, WgslError};
+use triptych_gpu::wgsl::Sources;
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::{Cell, Mutant};
 use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
-use crate::registry::{Chain, FAMILIES};
+use crate::registry::{Chain, RIVALS};
 use crate::replay::Extent;
 use crate::replay::gpu::{Adapter, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
-use crate::replay::rivals;
+use crate::replay::rivals::run_only;
 use crate::replay::rows::Rows;
 use crate::replay::rsm::{RsmLeg, RsmRun};
 use crate::replay::spec::SpecRun;
@@ -25,6 +27,7 @@ use crate::replay::vertex::VertexLeg;
 use crate::row::{Row, Verdict};
 use crate::scene::value::Capacity;
 use crate::scene::{Loaded, load_entry};
+use part::{Part, differ, touched};
 
 /// A scene with what the spec says of it.
 pub(super) struct Ground {
@@ -49,17 +52,6 @@ pub(super) struct Setting {
     /// What is compared.
     part: Part,
     bindings: Option<u64>,
-}
-
-/// What of a scene of triangles is compared.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Part {
-    /// The vertex stages.
-    Vertex,
-    /// The stages that start from the spec's triangles.
-    Lists,
-    /// The rivals of the lists.
-    Rivals,
 }
 
 /// A cell, and whether the shipped kernels were asked for it.
@@ -136,7 +128,8 @@ impl Ground {
     ) -> Tried {
         let new = !self.sound.contains(&(adapter.gpu.name.clone(), setting));
         if new {
-            let rows = self.rows(adapter, setting).map_err(|e| e.to_string())?;
+            let rows = self.rows(adapter, setting, &RIVALS);
+            let rows = rows.map_err(|e| e.to_string())?;
             let is = |verdict| rows.iter().any(|r| r.verdict() == verdict);
             if is(Verdict::Diverge) || !is(Verdict::Agree) {
                 return Err(format!(
@@ -159,15 +152,22 @@ impl Ground {
         sources: Sources,
         fault: Option<Fault>,
     ) -> Result<Vec<Row>, GpuError> {
+        let native = setting.path == Path::Native;
+        let rivals: Vec<&'static str> = differ(&sources, native, &RIVALS)?.collect();
         let mutated = kernels(adapter, setting.path).mutated(sources, fault)?;
         let shipped = std::mem::replace(kernels(adapter, setting.path), mutated);
-        let rows = self.rows(adapter, setting);
+        let rows = self.rows(adapter, setting, &rivals);
         *kernels(adapter, setting.path) = shipped;
         rows
     }
 
-    /// The rows of a leg.
-    fn rows(&self, adapter: &Adapter, setting: Setting) -> Result<Vec<Row>, GpuError> {
+    /// The rows of a leg, and of these rivals if any are what is compared.
+    fn rows(
+        &self,
+        adapter: &Adapter,
+        setting: Setting,
+        rivals: &[&'static str],
+    ) -> Result<Vec<Row>, GpuError> {
         let Setting { path, part, .. } = setting;
         let Loaded {
             scene,
@@ -232,7 +232,7 @@ impl Ground {
             from: From::default(),
         };
         match part {
-            Part::Rivals => rivals::run(&leg, Extent::All, &mut rows)?,
+            Part::Rivals => run_only(rivals, &leg, Extent::All, &mut rows)?,
             _ => drop(leg.run(&mut rows)?),
         }
         Ok(rows.rows)
@@ -271,27 +271,4 @@ fn cannot_run(adapter: &Adapter, path: Path) -> Option<&'static str> {
         Path::Fragment if adapter.grid == Grid::Unknown => Some("the sub-pixel grid is unknown"),
         _ => None,
     }
-}
-
-/// Which stages' kernels are not those that ship: the first of them have the defect.
-fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError> {
-    let shipped = Sources::shipped(native);
-    let differs = |file: &&str| -> Result<bool, WgslError> {
-        Ok(sources.link(file)?.text != shipped.link(file)?.text)
-    };
-    if differs(&"vertex")? {
-        return Ok(Part::Vertex);
-    }
-    for file in ["raster", "abuffer"] {
-        if differs(&file)? {
-            return Ok(Part::Lists);
-        }
-    }
-    let rivals = FAMILIES.iter().find(|family| family.name == "abuffer");
-    for file in rivals.map_or(&[][..], |family| family.files) {
-        if differs(file)? {
-            return Ok(Part::Rivals);
-        }
-    }
-    Ok(Part::Lists)
 }
