@@ -207,7 +207,7 @@ fn lists_are_walked_only_where_the_steps_suffice() {
 }
 
 /// The more of the nearest layers are shown, the nearer the picture is to that of all: the mean
-/// square of the error falls on every scene, until nothing is left out.
+/// square of the error never rises with their number, on any scene.
 #[test]
 fn more_layers_are_nearer_to_all() {
     const FRAGMENTS: usize = 1 << 18;
@@ -230,10 +230,11 @@ fn more_layers_are_nearer_to_all() {
             pairs.map(|(a, b)| (a.value - b.value).powi(2)).sum::<f64>()
         };
         let errors: Vec<f64> = [0, 2, 4, 8, 16, 32, 64].map(error).to_vec();
-        for pair in errors.windows(2) {
-            let falls = pair[1] < pair[0] || pair[0] == 0.0;
-            assert!(falls && pair[1] <= pair[0], "{}: {errors:?}", entry.name);
-        }
+        // The nearest may be invisible.
+        let falls = errors.windows(2).all(|pair| pair[1] <= pair[0]);
+        assert!(falls, "{}: {errors:?}", entry.name);
+        let gone = errors[0] == 0.0 || errors[6] < errors[0];
+        assert!(gone, "{}: {errors:?}", entry.name);
         seen += 1;
     }
     assert!(seen > 15, "{seen} scenes are not the corpus");

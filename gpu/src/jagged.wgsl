@@ -21,9 +21,10 @@ struct List {
 // Of each tile, entries in rows before each.
 @group(0) @binding(31) var<storage, read_write> rows: array<u32>;
 
-// Lists longer than LONG, and the longest of all.
+// The longest list of all; which kernels of stage shade have any, a bit for each; lists longer than LONG.
 struct Longest {
     length: atomic<u32>,
+    kernels: atomic<u32>,
     count: atomic<u32>,
     lists: array<u32>,
 }
@@ -179,6 +180,11 @@ fn store(pixel: u32, key: u32, prim: u32, fill: bool) {
     }
 }
 
+// Which kernel of stage shade takes a list: those of up to 8, 16, 32, 64 entries, and of more.
+fn kernel_of(length: u32) -> u32 {
+    return u32(length > 8u) + u32(length > 16u) + u32(length > 32u) + u32(length > ROWS);
+}
+
 var<workgroup> tile_lengths: array<u32, WORKGROUP>;
 var<workgroup> first_of_tile: u32;
 
@@ -194,6 +200,7 @@ fn place_lists(tile: u32, lane: u32) {
     var before = 0u;    // entries of lists before this one
     var rank = 0u;      // lists that are longer, or as long and before it
     var row = 0u;       // entries in rows before row `lane`
+    var kernels = 0u;
     for (var i = 0u; i < WORKGROUP; i += 1u) {
         let other = tile_lengths[i];
         most = max(most, other);
@@ -201,10 +208,15 @@ fn place_lists(tile: u32, lane: u32) {
         before += select(0u, other, i < lane);
         rank += u32(other > length || (other == length && i < lane));
         row += min(other, lane);
+        kernels |= 1u << kernel_of(other);
+    }
+    if most > ROWS {
+        kernels = 1u << kernel_of(most);
     }
     if lane == 0u {
         first_of_tile = atomicAdd(&counter, all);
         atomicMax(&longest.length, most);
+        atomicOr(&longest.kernels, kernels);
     }
     let first = workgroupUniformLoad(&first_of_tile);
     if most <= ROWS {

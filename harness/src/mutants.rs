@@ -10,7 +10,6 @@
 mod ground;
 mod lab;
 mod matrix;
-mod part;
 mod table;
 mod text;
 

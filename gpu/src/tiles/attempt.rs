@@ -107,7 +107,7 @@ fn jagged(
     if needed > capacity {
         return Ok(Tried::Needs(needed));
     }
-    let [longest, longs]: [u32; 2] = gpu.read(room.get("longest"), 1)?[0];
+    let longest = room.longest()?;
     let entries = || gpu.storage("entries of lists", 8 * u64::from(needed));
     room.set("listed", entries()?);
     room.set("merged", entries()?);
@@ -125,7 +125,7 @@ fn jagged(
         ))
     };
     let built = linked(room)?;
-    let sort = room.sort_lists(longest, longs)?;
+    let sort = room.sort_lists(longest)?;
     times.shade = submit(room, &sort)?;
     times.shade += submit(room, &room.shade(longest, u32::MAX, true)?)?;
     let result = BandResult {

@@ -1,5 +1,6 @@
 //! Buffers of a band that is drawn by tiles, and the passes over them.
 
+use bytemuck::{Pod, Zeroable};
 use triptych_spec::tiles::ROWS;
 
 use super::{Tiled, lists, tiles};
@@ -32,6 +33,18 @@ pub(super) const NEED: Need = Need {
     node: 16,
     pixels_max: u64::MAX,
 };
+
+/// What is known of lists once they are placed. Twin: `Longest` in `jagged.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(super) struct Longest {
+    /// Entries of the longest.
+    pub(super) length: u32,
+    /// Which kernels of stage shade have any, a bit for each of [`ENTRIES`].
+    pub(super) kernels: u32,
+    /// How many are longer than a workgroup sorts.
+    pub(super) count: u32,
+}
 
 /// A band on the device.
 pub(super) struct Room<'r, 'g> {
@@ -69,7 +82,7 @@ impl<'r, 'g> Room<'r, 'g> {
             ("listed", words("entries of lists", 0)?),
             ("lists", gpu.storage("lists", LIST * u64::from(lists))?),
             ("rows", words("rows of tiles", lists)?),
-            ("longest", words("longest lists", lists + 2)?),
+            ("longest", words("longest lists", lists + 3)?),
             ("counter", words("counter", 1)?),
             ("unfinished", words("unfinished", 1)?),
             ("picture", gpu.storage("picture", 16 * u64::from(pixels))?),
@@ -100,6 +113,13 @@ impl<'r, 'g> Room<'r, 'g> {
     pub(super) fn bytes(&self) -> u64 {
         let own = self.buffers.iter().map(|(_, buffer)| buffer.size());
         own.sum::<u64>() + self.in_tiles.size()
+    }
+
+    /// What the kernels found out of the lists.
+    pub(super) fn longest(&self) -> Result<Longest, GpuError> {
+        let gpu = self.rasterizer.gpu;
+        let words: Vec<Longest> = gpu.read(self.get("longest"), 1)?;
+        Ok(words[0])
     }
 
     /// Exchanges the entries with those that the last pass left in order.
@@ -232,9 +252,9 @@ impl<'r, 'g> Room<'r, 'g> {
         }
     }
 
-    /// Puts lists that are too long for registers in order, `count` of them longer than a workgroup
-    /// sorts, and the longest of all `length`.
-    pub(super) fn sort_lists(&mut self, length: u32, count: u32) -> Result<Vec<Ready>, GpuError> {
+    /// Puts lists that are too long for registers in order.
+    pub(super) fn sort_lists(&mut self, longest: Longest) -> Result<Vec<Ready>, GpuError> {
+        let Longest { length, count, .. } = longest;
         let mut passes = Vec::new();
         if length <= ROWS {
             return Ok(passes);
@@ -258,11 +278,10 @@ impl<'r, 'g> Room<'r, 'g> {
         Ok(passes)
     }
 
-    /// Blends so many layers of lists of which the longest has so many entries; `stored`: short ones
-    /// are written back in order as well.
+    /// Blends so many layers of these lists; `stored`: short ones are written back in order as well.
     pub(super) fn shade(
         &self,
-        length: u32,
+        longest: Longest,
         layers: u32,
         stored: bool,
     ) -> Result<Vec<Ready>, GpuError> {
@@ -272,12 +291,16 @@ impl<'r, 'g> Room<'r, 'g> {
             stored: stored.into(),
             ..self.of_tiles()
         };
-        for (entry, least) in ENTRIES.into_iter().zip([0, 9, 17, 33]) {
-            if least <= length {
+        for (at, entry) in ENTRIES.into_iter().enumerate() {
+            if longest.kernels >> at & 1 == 1 {
                 passes.push(self.pass(entry, short, self.tiles)?);
             }
         }
-        let long = if length > ROWS { length } else { 0 };
+        let long = if longest.length > ROWS {
+            longest.length
+        } else {
+            0
+        };
         for first in (0..long).step_by(STEPS as usize) {
             let tiled = Tiled {
                 first,

@@ -52,10 +52,10 @@ impl<'r, 'g> Timed<'r, 'g> {
         let drawn = (attempt::longest(&bins), options.drawn);
         attempt::submit(&room, &room.place_lists(drawn)?)?;
         let fragments = gpu.word(room.get("counter"), 0)?;
-        let [longest, longs]: [u32; 2] = gpu.read(room.get("longest"), 1)?[0];
+        let longest = room.longest()?;
         let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
         room.set("listed", entries()?);
-        if longest > ROWS {
+        if longest.length > ROWS {
             room.set("merged", entries()?);
         }
         let mut bin = room.count_bins(false)?;
@@ -65,8 +65,8 @@ impl<'r, 'g> Timed<'r, 'g> {
             (Span::Place, room.place_lists(drawn)?),
             (Span::Fill, room.drawn("jagged_fill", fragments, drawn)?),
         ];
-        if longest > ROWS {
-            spans.push((Span::Sort, room.sort_lists(longest, longs)?));
+        if longest.length > ROWS {
+            spans.push((Span::Sort, room.sort_lists(longest)?));
         }
         for n in layers {
             spans.push((Span::Shade(*n), room.shade(longest, *n, false)?));

@@ -1,5 +1,7 @@
 //! A scene on which mutants run, once the shipped kernels agree there.
 
+mod part;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use triptych_gpu::error::GpuError;
@@ -8,17 +10,16 @@ use triptych_gpu::raster::Path;
 use triptych_gpu::wgsl::Sources;
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
-use super::part::Part;
 use super::{Cell, Mutant};
 use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
-use crate::registry::Chain;
+use crate::registry::{Chain, RIVALS};
 use crate::replay::Extent;
 use crate::replay::gpu::{Adapter, Drawn, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
-use crate::replay::rivals;
+use crate::replay::rivals::run_only;
 use crate::replay::rows::Rows;
 use crate::replay::rsm::{RsmLeg, RsmRun};
 use crate::replay::spec::SpecRun;
@@ -27,6 +28,7 @@ use crate::replay::vertex::VertexLeg;
 use crate::row::{Row, Verdict};
 use crate::scene::value::Capacity;
 use crate::scene::{Loaded, load_entry};
+use part::{Part, differ, touched};
 
 /// A scene with what the spec says of it.
 pub(super) struct Ground {
@@ -106,7 +108,7 @@ impl Ground {
         let sources = sources.map_err(|e| e.to_string())?;
         let setting = Setting {
             path,
-            part: Part::touched(&sources, native).map_err(|e| e.to_string())?,
+            part: touched(&sources, native).map_err(|e| e.to_string())?,
             bindings: mutant.bindings,
         };
         if let Some(bytes) = setting.bindings {
@@ -127,7 +129,8 @@ impl Ground {
     ) -> Tried {
         let new = !self.sound.contains(&(adapter.gpu.name.clone(), setting));
         if new {
-            let rows = self.rows(adapter, setting).map_err(|e| e.to_string())?;
+            let rows = self.rows(adapter, setting, &RIVALS);
+            let rows = rows.map_err(|e| e.to_string())?;
             let is = |verdict| rows.iter().any(|r| r.verdict() == verdict);
             if is(Verdict::Diverge) || !is(Verdict::Agree) {
                 return Err(format!(
@@ -150,15 +153,22 @@ impl Ground {
         sources: Sources,
         fault: Option<Fault>,
     ) -> Result<Vec<Row>, GpuError> {
+        let native = setting.path == Path::Native;
+        let rivals: Vec<&'static str> = differ(&sources, native, &RIVALS)?.collect();
         let mutated = kernels(adapter, setting.path).mutated(sources, fault)?;
         let shipped = std::mem::replace(kernels(adapter, setting.path), mutated);
-        let rows = self.rows(adapter, setting);
+        let rows = self.rows(adapter, setting, &rivals);
         *kernels(adapter, setting.path) = shipped;
         rows
     }
 
-    /// The rows of a leg.
-    fn rows(&self, adapter: &Adapter, setting: Setting) -> Result<Vec<Row>, GpuError> {
+    /// The rows of a leg, and of these rivals if any are what is compared.
+    fn rows(
+        &self,
+        adapter: &Adapter,
+        setting: Setting,
+        rivals: &[&'static str],
+    ) -> Result<Vec<Row>, GpuError> {
         let Setting { path, part, .. } = setting;
         let Loaded {
             scene,
@@ -223,7 +233,7 @@ impl Ground {
             from: From::default(),
         };
         match part {
-            Part::Rivals => rivals::run(&leg, Extent::All, &mut rows)?,
+            Part::Rivals => run_only(rivals, &leg, Extent::All, &mut rows)?,
             Part::Tiles => tiles::run(&leg, Extent::All, &mut rows)?,
             _ => drop(leg.run(&mut rows)?),
         }

@@ -29,8 +29,21 @@ pub const WORK_MAX: u64 = 1 << 20;
 /// # Errors
 /// Whatever the device reports.
 pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuError> {
+    run_only(&RIVALS, leg, extent, rows)
+}
+
+/// Adds rows for some of them.
+///
+/// # Errors
+/// Whatever the device reports.
+pub fn run_only(
+    stages: &[&'static str],
+    leg: &GpuLeg<'_>,
+    extent: Extent,
+    rows: &mut Rows,
+) -> Result<(), GpuError> {
     let mut rasterizer = None;
-    for stage in RIVALS {
+    for &stage in stages {
         if let Some(reason) = reason_not_run(leg, extent, stage) {
             let label = leg.label();
             rows.skip(stage, &leg.spec.label, &label, Class::Interval, reason);

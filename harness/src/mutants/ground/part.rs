@@ -1,0 +1,49 @@
+//! Which stages can see a defect.
+
+use triptych_gpu::wgsl::{Sources, WgslError};
+
+use crate::registry::RIVALS;
+
+/// What of a scene of triangles is compared.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Part {
+    /// The vertex stages.
+    Vertex,
+    /// The stages that start from the spec's triangles.
+    Lists,
+    /// The rivals of the lists.
+    Rivals,
+    /// The lists by tiles.
+    Tiles,
+}
+
+/// Which stages' kernels are not those that ship: the first of them have the defect.
+pub(super) fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError> {
+    if differ(sources, native, &["vertex"])?.next().is_some() {
+        return Ok(Part::Vertex);
+    }
+    let lists = differ(sources, native, &["raster", "abuffer"])?.next();
+    let rivals = differ(sources, native, &RIVALS)?.next();
+    let tiles = differ(sources, native, &["tiles"])?.next();
+    Ok(match (lists, rivals, tiles) {
+        (None, Some(_), _) => Part::Rivals,
+        (None, None, Some(_)) => Part::Tiles,
+        _ => Part::Lists,
+    })
+}
+
+/// Those of these files that are not as they ship, with what they import.
+pub(super) fn differ<'f>(
+    sources: &Sources,
+    native: bool,
+    files: &[&'f str],
+) -> Result<impl Iterator<Item = &'f str> + use<'f>, WgslError> {
+    let shipped = Sources::shipped(native);
+    let mut found = Vec::new();
+    for file in files {
+        if sources.link(file)?.text != shipped.link(file)?.text {
+            found.push(*file);
+        }
+    }
+    Ok(found.into_iter())
+}
