@@ -191,6 +191,7 @@ fn a_kernel_that_no_frame_runs_is_refused() {
         ("clip", "vertex"),
         ("snap", "vertex"),
         ("cover", "raster"),
+        ("peel", "peel"),
     ] {
         place.write("mine.wgsl", &format!("//#import {file}\n"));
         let kernel = format!("{stage}=mine.wgsl");
@@ -198,7 +199,7 @@ fn a_kernel_that_no_frame_runs_is_refused() {
         let ran = ran.expect(2);
         let words = format!(
             "triptych: --kernel {kernel}: no frame of bench runs this stage, only opaque, build, \
-             sort, resolve\n"
+             sort, resolve, bin, jagged, shade\n"
         );
         assert_eq!(ran.stderr, words);
         assert_eq!(ran.stdout, "");

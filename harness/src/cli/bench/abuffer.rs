@@ -14,7 +14,7 @@ use crate::bench::{Bench, Options, Progress, Row, csv, markdown, run as measure,
 use crate::corpus::{self, Entry};
 use crate::mesh::Intake;
 use crate::output::{complain, stdout};
-use crate::registry::FAMILIES;
+use crate::registry::{FAMILIES, RIVALS};
 use crate::text::clean;
 use triptych_gpu::kernel::Foreign;
 
@@ -112,7 +112,8 @@ fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
     let drawn = |name: &str| name == FAMILY || name == "tiles";
     let families = FAMILIES.iter().filter(|family| drawn(family.name));
     let stages = families.flat_map(|family| family.stages);
-    let names: Vec<&str> = stages.map(|stage| stage.name).collect();
+    let names = stages.map(|stage| stage.name);
+    let names: Vec<&str> = names.filter(|name| !RIVALS.contains(name)).collect();
     match foreign.iter().find(|f| !names.contains(&f.stage.name)) {
         None => Ok(()),
         Some(Foreign { stage, file, .. }) => anyhow::bail!(
