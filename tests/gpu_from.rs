@@ -13,7 +13,7 @@ use triptych_gpu::wgsl::Sources;
 use triptych_harness::corpus::{self, Entry};
 use triptych_harness::observe::Observed;
 use triptych_harness::plan::Plan;
-use triptych_harness::registry::{Chain, stages_of};
+use triptych_harness::registry::handing_on;
 use triptych_harness::replay::gpu::{Adapter, From, GpuLeg};
 use triptych_harness::replay::spec::SpecRun;
 use triptych_harness::replay::{Options, replay};
@@ -110,7 +110,7 @@ fn rows(scene: &str, adapters: &[Adapter], from: From, paths: &[Path]) -> Vec<Ro
 #[test]
 fn every_stage_can_be_the_first() {
     let named: Vec<String> = From::all().iter().map(|f| f.name()).collect();
-    let stages: Vec<&str> = stages_of(Chain::Frame).map(|s| s.name).collect();
+    let stages: Vec<&str> = handing_on().map(|s| s.name).collect();
     assert_eq!(named, stages, "in the order in which they run");
 }
 
@@ -129,7 +129,7 @@ fn from_every_stage_on_all_agrees() {
             assert!(!beside || *from == From::Cover, "{at}");
             for (adapter, stage) in adapters
                 .iter()
-                .flat_map(|a| stages_of(Chain::Frame).map(move |s| (a, s)))
+                .flat_map(|a| handing_on().map(move |s| (a, s)))
             {
                 let leg = format!("gpu@{}/compute", adapter.gpu.name);
                 let row = rows.iter().find(|r| r.b == leg && r.stage == stage.name);
@@ -205,15 +205,13 @@ fn the_stages_before_do_not_run() {
 /// Whether a stage runs on the GPU and is compared.
 fn runs(stage: &str, from: From) -> bool {
     let beside = from == From::Cover && VERTEX.contains(&stage);
-    let place = |name: &str| stages_of(Chain::Frame).position(|s| s.name == name);
+    let place = |name: &str| handing_on().position(|s| s.name == name);
     beside || place(stage) >= place(&from.name())
 }
 
 /// The first stage, the one given and its next, and the default.
 fn around(stage: &str) -> impl Iterator<Item = From> {
-    let at = stages_of(Chain::Frame)
-        .position(|s| s.name == stage)
-        .expect("a stage");
+    let at = handing_on().position(|s| s.name == stage).expect("a stage");
     let wanted = move |(place, from): &(usize, &From)| {
         [0, at, at + 1].contains(place) || **from == From::Cover
     };
@@ -236,7 +234,7 @@ fn a_defect_shows_until_it_is_passed() {
             for adapter in adapters.iter() {
                 let leg = format!("gpu@{}/compute", adapter.gpu.name);
                 let diverging = rows.iter().filter(|r| {
-                    let isolated = stages_of(Chain::Frame).any(|s| s.name == r.stage);
+                    let isolated = handing_on().any(|s| s.name == r.stage);
                     isolated && r.b == leg && r.verdict() == Verdict::Diverge
                 });
                 let diverging: Vec<&str> = diverging.map(|r| r.stage.as_str()).collect();

@@ -150,6 +150,13 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
 /// A-buffer. They run beside it, from the same triangles and surfaces.
 pub const RIVALS: [&str; 6] = ["peel", "dual", "alpha", "weighted", "density", "defocus"];
 
+/// The stages of a frame that hand on what they make: not what takes the place of linked lists.
+pub fn handing_on() -> impl Iterator<Item = &'static Stage> {
+    let own = |family: &&Family| family.chain == Chain::Frame && family.name != "tiles";
+    let stages = FAMILIES.iter().filter(own).flat_map(|family| family.stages);
+    stages.filter(|stage| !RIVALS.contains(&stage.name))
+}
+
 /// Whether a result row may be called so.
 pub fn names_row(name: &str) -> bool {
     stages().any(|stage| stage.name == name) || ROWS.iter().any(|(row, _)| *row == name)

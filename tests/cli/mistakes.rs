@@ -134,12 +134,9 @@ fn options_with_a_mistake() {
     // The GPU may take over at every stage that hands something on: not at what takes the place of
     // lists.
     let ran = place.run(&["replay", "--gpu-from", "nonsuch"]);
-    let stages: Vec<&str> =
-        triptych_harness::registry::stages_of(triptych_harness::registry::Chain::Frame)
-            .map(|s| s.name)
-            .filter(|name| !triptych_harness::registry::RIVALS.contains(name))
-            .filter(|name| !["bin", "jagged", "shade"].contains(name))
-            .collect();
+    let stages: Vec<&str> = triptych_harness::registry::handing_on()
+        .map(|s| s.name)
+        .collect();
     let listed = format!("[possible values: {}]", stages.join(", "));
     assert!(
         ran.stderr.contains(&listed),
