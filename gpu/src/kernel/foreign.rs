@@ -121,9 +121,12 @@ fn check(ours: &Program, theirs: &Program, name: &str) -> Vec<WgslError> {
             "{name} has workgroups of {size:?}, not [{WORKGROUP}, 1, 1]"
         ));
     }
-    if seen.stage == ShaderStage::Fragment && seen.function.result.is_some() {
-        let message = format!("{name} returns a value; a pass that builds lists writes no colour");
-        differs(message);
+    let colours = [(ours, must), (theirs, seen)].map(|(program, entry)| returned(program, entry));
+    if seen.stage == ShaderStage::Fragment && colours[0] != colours[1] {
+        differs(match colours[0].len() {
+            0 => format!("{name} returns a value; a pass that builds lists writes no colour"),
+            n => format!("{name} returns no {n} colours, at locations 0 to {}", n - 1),
+        });
     }
     for location in locations(theirs, seen).into_iter().filter(|l| *l != 0) {
         differs(format!(
@@ -230,6 +233,21 @@ fn locations(program: &Program, entry: &EntryPoint) -> Vec<u32> {
         }
     }
     found
+}
+
+/// Locations of the colours that an entry point returns; a value without one has the last.
+fn returned(program: &Program, entry: &EntryPoint) -> Vec<u32> {
+    let Some(result) = &entry.function.result else {
+        return Vec::new();
+    };
+    let place = |binding: &Option<Binding>| match binding {
+        Some(Binding::Location { location, .. }) => *location,
+        _ => u32::MAX,
+    };
+    match &program.module.types[result.ty].inner {
+        TypeInner::Struct { members, .. } => members.iter().map(|m| place(&m.binding)).collect(),
+        _ => vec![place(&result.binding)],
+    }
 }
 
 #[cfg(test)]

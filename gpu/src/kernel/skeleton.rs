@@ -46,9 +46,30 @@ pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
     for entry in stage.fragment {
         let arguments = "@builtin(position) position: vec4<f32>, \
                          @location(0) @interpolate(flat) prim: u32";
-        function(&mut text, "@fragment", entry, arguments, "");
+        blended(&mut text, &program.module, entry, arguments);
     }
     Ok(text)
+}
+
+/// A fragment kernel, with as many colours as ours returns.
+fn blended(text: &mut String, module: &Module, entry: &str, arguments: &str) {
+    let ours = module.entry_points.iter().find(|e| e.name == entry);
+    let colours = match ours.and_then(|e| e.function.result.as_ref()) {
+        None => return function(text, "@fragment", entry, arguments, ""),
+        Some(result) => match &module.types[result.ty].inner {
+            TypeInner::Struct { members, .. } => members.len(),
+            _ => 1,
+        },
+    };
+    text.push_str("\n// What the hardware blends.\nstruct Blended {\n");
+    for at in 0..colours {
+        let _ = writeln!(text, "    @location({at}) colour_{at}: vec4<f32>,");
+    }
+    let none = vec!["vec4(0.0)"; colours].join(", ");
+    let _ = write!(
+        text,
+        "}}\n\n@fragment\nfn {entry}({arguments}) -> Blended {{\n    return Blended({none});\n}}\n"
+    );
 }
 
 /// What a compute entry point of ours is given, and how it leaves out what is too many. Where
@@ -56,12 +77,24 @@ pub fn skeleton(stage: &Stage) -> Result<String, WgslError> {
 fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
     let inputs = inputs(module, entry);
     let given: Vec<String> = inputs.iter().map(|input| argument(*input)).collect();
+    // Of the rivals, what goes through the triangles has rows of them.
+    let walks = [
+        "peel_nearest",
+        "peel_first",
+        "dual_nearest",
+        "dual_first",
+        "alpha_next",
+        "weighted",
+    ];
+    let of_pixels =
+        matches!(stage.file, "peel" | "dual" | "alpha" | "weighted") && !walks.contains(&entry);
     let items = match (stage.file, stage.name) {
         ("grid", _) => "cells.items",
         ("rsm", _) => "parameters.items",
         ("ldm", "neighbours") => "told.maps * told.items",
         ("ldm", _) => "told.items",
-        (_, "sort" | "resolve") => "frame.width * frame.rows",
+        (_, "sort" | "resolve" | "density" | "defocus") => "frame.width * frame.rows",
+        _ if of_pixels => "frame.width * frame.rows",
         _ => "frame.items",
     };
     let has = |input| inputs.contains(&input);

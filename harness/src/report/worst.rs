@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 33] = [
+const ORDER: [&str; 39] = [
     "leg",
     "all",
     "expect",
@@ -23,6 +23,12 @@ const ORDER: [&str; 33] = [
     "build",
     "sort",
     "resolve",
+    "peel",
+    "dual",
+    "alpha",
+    "weighted",
+    "density",
+    "defocus",
     "count",
     "scan",
     "fill",

@@ -14,7 +14,7 @@ use crate::bench::{Bench, Options, Progress, Row, csv, markdown, run as measure,
 use crate::corpus::{self, Entry};
 use crate::mesh::Intake;
 use crate::output::{complain, stdout};
-use crate::registry::FAMILIES;
+use crate::registry::{FAMILIES, RIVALS};
 use crate::text::clean;
 use triptych_gpu::kernel::Foreign;
 
@@ -111,7 +111,8 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
 fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
     let family = FAMILIES.iter().find(|family| family.name == FAMILY);
     let stages = family.map_or(&[][..], |family| family.stages);
-    let names: Vec<&str> = stages.iter().map(|stage| stage.name).collect();
+    let names = stages.iter().map(|stage| stage.name);
+    let names: Vec<&str> = names.filter(|name| !RIVALS.contains(name)).collect();
     match foreign.iter().find(|f| !names.contains(&f.stage.name)) {
         None => Ok(()),
         Some(Foreign { stage, file, .. }) => anyhow::bail!(
