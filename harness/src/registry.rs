@@ -37,8 +37,8 @@ pub enum Chain {
     Maps,
 }
 
-/// A stage. Its name is that of the spec's function, of its pass in a plan, and of the
-/// value of `--gpu-from` that begins with it.
+/// A stage. Its name is that of the spec's function, of its pass in a plan, and, unless it is
+/// one of [`RIVALS`], of the value of `--gpu-from` that begins with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stage {
     /// The name.
