@@ -5,6 +5,7 @@
 
 mod attempt;
 mod linked;
+mod lists;
 mod room;
 mod timed;
 

@@ -1,23 +1,16 @@
 //! Buffers of a band that is drawn by tiles, and the passes over them.
 
 use bytemuck::{Pod, Zeroable};
-use triptych_spec::tiles::ROWS;
 
 use super::{Tiled, lists, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
-use crate::lists::{TILE, long_passes};
+use crate::lists::TILE;
 use crate::raster::{Need, Rasterizer};
-
-/// Steps along lists that a dispatch takes.
-pub(super) const STEPS: u32 = 16_384;
 
 /// Bytes of a list. Twin: `List` in `jagged.wgsl`.
 const LIST: u64 = 12;
-
-/// Kernels that blend short lists, by the sizes of [`crate::wgsl::network::SIZES`].
-const ENTRIES: [&str; 4] = ["shade_8", "shade_16", "shade_32", "shade_64"];
 
 /// Workgroups that share large triangles, as long as that is enough.
 const GROUPS: u32 = 2048;
@@ -133,7 +126,7 @@ impl<'r, 'g> Room<'r, 'g> {
         }
     }
 
-    fn pass(&self, entry: &str, tiled: Tiled, groups: u32) -> Result<Ready, GpuError> {
+    pub(super) fn pass(&self, entry: &str, tiled: Tiled, groups: u32) -> Result<Ready, GpuError> {
         self.pass_with(entry, tiled, groups, &[])
     }
 
@@ -232,83 +225,6 @@ impl<'r, 'g> Room<'r, 'g> {
         let mut passes = Vec::new();
         for first in (0..longest.max(1)).step_by(drawn.max(1) as usize) {
             passes.push(pass(first)?);
-        }
-        Ok(passes)
-    }
-
-    /// Counts the fragments of each list, and says where they will be.
-    pub(super) fn place_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
-        let mut passes = self.drawn("jagged_count", 0, bins)?;
-        let place = self.pass("jagged_place", self.of_tiles(), self.tiles)?;
-        let place = place.after_clearing(self.get("counter").clone());
-        passes.push(place.after_clearing(self.get("longest").clone()));
-        Ok(passes)
-    }
-
-    fn of_tiles(&self) -> Tiled {
-        Tiled {
-            items: self.tiles,
-            ..Tiled::default()
-        }
-    }
-
-    /// Puts lists that are too long for registers in order.
-    pub(super) fn sort_lists(&mut self, longest: Longest) -> Result<Vec<Ready>, GpuError> {
-        let Longest { length, count, .. } = longest;
-        let mut passes = Vec::new();
-        if length <= ROWS {
-            return Ok(passes);
-        }
-        passes.push(self.pass("shade_sort", self.of_tiles(), self.tiles)?);
-        let groups = length.div_ceil(WORKGROUP);
-        let mut long: Vec<_> = long_passes(["shade_runs", "shade_merge"], length).collect();
-        if long.len() % 2 == 1 {
-            // What is in order is copied back to where all other lists are.
-            long.push(("shade_merge", length.next_power_of_two()));
-        }
-        for (entry, run) in long {
-            let tiled = Tiled {
-                run,
-                groups,
-                ..Tiled::default()
-            };
-            passes.push(self.pass(entry, tiled, groups * count)?);
-            self.swap();
-        }
-        Ok(passes)
-    }
-
-    /// Blends so many layers of these lists; `stored`: short ones are written back in order as well.
-    pub(super) fn shade(
-        &self,
-        longest: Longest,
-        layers: u32,
-        stored: bool,
-    ) -> Result<Vec<Ready>, GpuError> {
-        let mut passes = Vec::new();
-        let short = Tiled {
-            layers,
-            stored: stored.into(),
-            ..self.of_tiles()
-        };
-        for (at, entry) in ENTRIES.into_iter().enumerate() {
-            if longest.kernels >> at & 1 == 1 {
-                passes.push(self.pass(entry, short, self.tiles)?);
-            }
-        }
-        let long = if longest.length > ROWS {
-            longest.length
-        } else {
-            0
-        };
-        for first in (0..long).step_by(STEPS as usize) {
-            let tiled = Tiled {
-                first,
-                count: STEPS,
-                layers,
-                ..self.of_tiles()
-            };
-            passes.push(self.pass("shade_long", tiled, self.tiles)?);
         }
         Ok(passes)
     }

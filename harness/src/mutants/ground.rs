@@ -169,13 +169,9 @@ impl Ground {
         setting: Setting,
         rivals: &[&'static str],
     ) -> Result<Vec<Row>, GpuError> {
-        let Setting { path, part, .. } = setting;
+        let path = setting.path;
         let Loaded {
-            scene,
-            name,
-            family,
-            file,
-            ..
+            name, family, file, ..
         } = &self.loaded;
         let mut rows = Rows::new(name, family);
         if let (Some(spec), Some(section)) = (&self.grid, file.grid) {
@@ -207,6 +203,20 @@ impl Ground {
             }
             return Ok(rows.rows);
         }
+        self.frame(adapter, setting, rivals, &mut rows)?;
+        Ok(rows.rows)
+    }
+
+    /// The same of a scene of triangles alone.
+    fn frame(
+        &self,
+        adapter: &Adapter,
+        setting: Setting,
+        rivals: &[&'static str],
+        rows: &mut Rows,
+    ) -> Result<(), GpuError> {
+        let Setting { path, part, .. } = setting;
+        let (scene, file) = (&self.loaded.scene, &self.loaded.file);
         let spec = &self.specs[&adapter.bits(path)];
         if part == Part::Vertex {
             let leg = VertexLeg {
@@ -217,8 +227,7 @@ impl Ground {
                 from: From::default(),
                 budget: Some(file.budget.vertex.0),
             };
-            leg.run(Some(&mut rows))?;
-            return Ok(rows.rows);
+            return leg.run(Some(rows)).map(drop);
         }
         let leg = GpuLeg {
             adapter,
@@ -233,11 +242,10 @@ impl Ground {
             from: From::default(),
         };
         match part {
-            Part::Rivals => run_only(rivals, &leg, Extent::All, &mut rows)?,
-            Part::Tiles => tiles::run(&leg, Extent::All, &mut rows)?,
-            _ => drop(leg.run(&mut rows)?),
+            Part::Rivals => run_only(rivals, &leg, Extent::All, rows),
+            Part::Tiles => tiles::run(&leg, Extent::All, rows),
+            _ => leg.run(rows).map(drop),
         }
-        Ok(rows.rows)
     }
 
     /// Why a path has nothing to say of a mutant on this scene.

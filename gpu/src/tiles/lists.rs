@@ -1,0 +1,95 @@
+//! Passes over the lists of a band.
+
+use triptych_spec::tiles::ROWS;
+
+use super::Tiled;
+use super::room::{Longest, Room};
+use crate::dispatch::Ready;
+use crate::error::GpuError;
+use crate::frame::WORKGROUP;
+use crate::lists::long_passes;
+
+/// Steps along lists that a dispatch takes.
+pub(super) const STEPS: u32 = 16_384;
+
+/// Kernels that blend short lists, by the sizes of [`crate::wgsl::network::SIZES`].
+const ENTRIES: [&str; 4] = ["shade_8", "shade_16", "shade_32", "shade_64"];
+
+impl Room<'_, '_> {
+    /// Counts the fragments of each list, and says where they will be.
+    pub(super) fn place_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
+        let mut passes = self.drawn("jagged_count", 0, bins)?;
+        let place = self.pass("jagged_place", self.of_tiles(), self.tiles)?;
+        let place = place.after_clearing(self.get("counter").clone());
+        passes.push(place.after_clearing(self.get("longest").clone()));
+        Ok(passes)
+    }
+
+    fn of_tiles(&self) -> Tiled {
+        Tiled {
+            items: self.tiles,
+            ..Tiled::default()
+        }
+    }
+
+    /// Puts lists that are too long for registers in order.
+    pub(super) fn sort_lists(&mut self, longest: Longest) -> Result<Vec<Ready>, GpuError> {
+        let Longest { length, count, .. } = longest;
+        let mut passes = Vec::new();
+        if length <= ROWS {
+            return Ok(passes);
+        }
+        passes.push(self.pass("shade_sort", self.of_tiles(), self.tiles)?);
+        let groups = length.div_ceil(WORKGROUP);
+        let mut long: Vec<_> = long_passes(["shade_runs", "shade_merge"], length).collect();
+        if long.len() % 2 == 1 {
+            // What is in order is copied back to where all other lists are.
+            long.push(("shade_merge", length.next_power_of_two()));
+        }
+        for (entry, run) in long {
+            let tiled = Tiled {
+                run,
+                groups,
+                ..Tiled::default()
+            };
+            passes.push(self.pass(entry, tiled, groups * count)?);
+            self.swap();
+        }
+        Ok(passes)
+    }
+
+    /// Blends so many layers of these lists; `stored`: short ones are written back in order as well.
+    pub(super) fn shade(
+        &self,
+        longest: Longest,
+        layers: u32,
+        stored: bool,
+    ) -> Result<Vec<Ready>, GpuError> {
+        let mut passes = Vec::new();
+        let short = Tiled {
+            layers,
+            stored: stored.into(),
+            ..self.of_tiles()
+        };
+        for (at, entry) in ENTRIES.into_iter().enumerate() {
+            if longest.kernels >> at & 1 == 1 {
+                passes.push(self.pass(entry, short, self.tiles)?);
+            }
+        }
+        let long = if longest.length > ROWS {
+            longest.length
+        } else {
+            0
+        };
+        for first in (0..long).step_by(STEPS as usize) {
+            let tiled = Tiled {
+                first,
+                count: STEPS,
+                layers,
+                ..self.of_tiles()
+            };
+            passes.push(self.pass("shade_long", tiled, self.tiles)?);
+        }
+        Ok(passes)
+    }
+}
