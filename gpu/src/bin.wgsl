@@ -40,8 +40,9 @@ fn tile_in(box: Box, i: u32) -> u32 {
     return (box.first.y + i / box.across) * tiles_across() + box.first.x + i % box.across;
 }
 
+// Whether it is transparent.
 fn is_drawn(prim: u32) -> bool {
-    return (faces[prim].a >= 1.0) == (tiled.opaque != 0u);
+    return faces[prim].a < 1.0;
 }
 
 fn holds(s: Setup, tile: u32) -> bool {
@@ -82,6 +83,10 @@ fn bin_small(prim: u32, fill: bool) {
 
 // Large triangles, each by as many workgroups as there are for it.
 fn bin_large(group: u32, lane: u32, fill: bool) {
+    // There may be more workgroups than were asked for (`chunk_of`).
+    if group >= tiled.groups {
+        return;
+    }
     let count = atomicLoad(&larges.count);
     let share = max(tiled.groups / max(count, 1u), 1u);
     for (var i = group / share; i < count; i += tiled.groups / share) {

@@ -9,7 +9,11 @@ struct Deep {
     end: u32,
 }
 
+// Of the longest lists there are `items`; there may be more workgroups than they need.
 fn long_entry(group: u32, lane: u32) -> Deep {
+    if group / tiled.groups >= tiled.items {
+        return Deep(0u, 0u, 0u);
+    }
     let list = longest.lists[group / tiled.groups];
     let run = run_at(list / WORKGROUP, list % WORKGROUP);
     let at = run.start + group % tiled.groups * WORKGROUP + lane;

@@ -8,8 +8,7 @@ const SIDE: u32 = 8u;
 
 // What kernels of tiles are told beside the frame. Twin: `Tiled` in tiles.rs.
 struct Tiled {
-    items: u32,     // triangles, tiles, lists or entries of a dispatch
-    opaque: u32,    // 1: opaque triangles are drawn, 0: transparent ones
+    items: u32,     // triangles, tiles or lists of a dispatch
     capacity: u32,  // entries that there is room for; nodes, of each region
     first: u32,     // the first triangle of each bin that a dispatch draws
     count: u32,     // and how many

@@ -31,10 +31,8 @@ pub const DRAWN: u32 = 1 << 15;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Tiled {
-    /// Triangles, tiles, lists or entries of a dispatch.
+    /// Triangles, tiles or lists of a dispatch.
     pub items: u32,
-    /// 1: opaque triangles are drawn, 0: transparent ones.
-    pub opaque: u32,
     /// Entries that there is room for; nodes, of each region.
     pub capacity: u32,
     /// The first triangle of each bin, or entry of each list, of a dispatch.

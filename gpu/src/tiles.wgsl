@@ -173,54 +173,8 @@ fn shade_merge(
     }
 }
 
-// The lists of up to 8 entries, sorted in registers and blended over what lies behind.
-@compute @workgroup_size(WORKGROUP)
-fn shade_8(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length <= 8u {
-        shown(own.pixel, shaded_8(own.run, own.end));
-    }
-}
-
-@compute @workgroup_size(WORKGROUP)
-fn shade_16(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length > 8u && own.run.length <= 16u {
-        shown(own.pixel, shaded_16(own.run, own.end));
-    }
-}
-
-@compute @workgroup_size(WORKGROUP)
-fn shade_32(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length > 16u && own.run.length <= 32u {
-        shown(own.pixel, shaded_32(own.run, own.end));
-    }
-}
-
-@compute @workgroup_size(WORKGROUP)
-fn shade_64(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.length > 32u {
-        shown(own.pixel, shaded_64(own.run, own.end));
-    }
-}
+// Kernels shade_8, shade_16, shade_32 and shade_64 sort lists of at most so many entries in registers, and
+// blend them: `network` has them, which a program writes (wgsl/network.rs).
 
 // Longer lists, sorted before. A dispatch goes on where the one before stopped: the picture holds the
 // sum so far and the transmittance.

@@ -107,7 +107,7 @@ fn what_is_told_of_maps_is_that_of_rust() {
     everywhere("Hits", &words(&["key", "before", "behind"]), layout);
     everywhere("Open", &words(&["whole", "part"]), layout);
     everywhere("Link", &words(&["key", "next"]), layout);
-    let tiled = layout_of!(Tiled: items opaque capacity first count run groups layers stored);
+    let tiled = layout_of!(Tiled: items capacity first count run groups layers stored);
     everywhere("Tiled", &tiled, layout);
     let list = layout_of!(List: start length filled);
     everywhere("List", &list, layout);

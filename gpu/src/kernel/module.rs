@@ -52,7 +52,9 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
     // SAFETY: only `Kernels::trusted` comes here, with the kernels that ship. They index by
     // pixel below the band's, by triangle below those uploaded and by node below the
     // capacity, all of which the host has made the buffers for; and they follow no link
-    // that the host has not certified for these very lists.
+    // that the host has not certified for these very lists. Tiles have no links: entries are read
+    // where the same kernels have counted and filled them, from the same triangles, in bins and
+    // lists whose capacity is that of the count.
     unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
 }
 

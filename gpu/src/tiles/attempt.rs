@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use triptych_spec::abuffer::Lists;
+use triptych_spec::tiles::ROWS;
 
 use super::linked;
 use super::room::Room;
@@ -15,7 +16,7 @@ use crate::raster::{Rasterizer, SATURATED};
 
 /// Triangles in bins beyond which a band is split: a triangle has 64 fragments in a tile at most, and
 /// sums of fragments are to stay below [`SATURATED`].
-const BINNED_MAX: u32 = SATURATED / 64;
+pub(super) const BINNED_MAX: u32 = SATURATED / 64;
 
 /// What came of an attempt.
 pub(super) enum Tried {
@@ -33,13 +34,14 @@ pub(super) fn run(
     capacity: u32,
 ) -> Result<Tried, GpuError> {
     let mut room = room(rasterizer, options, band)?;
-    let (bins, bin) = bins(&mut room, false)?;
+    let (bins, mut bin) = count_bins(&room)?;
     let drawn = (longest(&bins), options.drawn.clamp(1, DRAWN));
     let binned = bins.last().copied().unwrap_or(0);
-    if binned > BINNED_MAX {
+    if binned > BINNED_MAX || 4 * u64::from(binned) > rasterizer.gpu.binding_limit() {
         // More fragments than any counter takes, for all that is known.
         return Ok(Tried::Needs(SATURATED));
     }
+    bin += fill_bins(&mut room, binned)?;
     let prims = rasterizer.gpu.read(room.get("binned"), binned as usize)?;
     let mut tried = jagged(&mut room, band, capacity, drawn)?;
     if let Tried::Done(drawn) = &mut tried {
@@ -77,19 +79,20 @@ pub(super) fn room<'r, 'g>(
     Ok(room)
 }
 
-/// Puts the opaque or the other triangles in bins; where each begins.
-pub(super) fn bins(
-    room: &mut Room<'_, '_>,
-    opaque: bool,
-) -> Result<(Vec<u32>, Duration), GpuError> {
+/// Counts the transparent triangles of each tile: where its bin begins.
+pub(super) fn count_bins(room: &Room<'_, '_>) -> Result<(Vec<u32>, Duration), GpuError> {
+    let time = submit(room, &room.count_bins()?)?;
     let gpu = room.rasterizer.gpu;
-    let mut time = submit(room, &room.count_bins(opaque)?)?;
-    let offsets: Vec<u32> = gpu.read(room.get("bins"), room.tiles as usize + 1)?;
-    let binned = offsets.last().copied().unwrap_or(0);
-    let bytes = 4 * u64::from(binned);
-    room.set("binned", gpu.storage("triangles in tiles", bytes)?);
-    time += submit(room, &room.fill_bins(opaque, binned)?)?;
+    let offsets = gpu.read(room.get("bins"), room.tiles as usize + 1)?;
     Ok((offsets, time))
+}
+
+/// Puts them in bins.
+pub(super) fn fill_bins(room: &mut Room<'_, '_>, binned: u32) -> Result<Duration, GpuError> {
+    let bytes = 4 * u64::from(binned);
+    let bins = room.rasterizer.gpu.storage("triangles in tiles", bytes)?;
+    room.set("binned", bins);
+    submit(room, &room.fill_bins(binned)?)
 }
 
 /// Stages jagged and shade.
@@ -107,10 +110,12 @@ fn jagged(
     if needed > capacity {
         return Ok(Tried::Needs(needed));
     }
-    let longest = room.longest()?;
+    let longest = room.longest(needed)?;
     let entries = || gpu.storage("entries of lists", 8 * u64::from(needed));
     room.set("listed", entries()?);
-    room.set("merged", entries()?);
+    if longest.length > ROWS {
+        room.set("merged", entries()?);
+    }
     times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
     let lists: Vec<linked::List> = gpu.read(room.get("lists"), room.lists as usize)?;
     let rows: Vec<u32> = gpu.read(room.get("rows"), room.lists as usize)?;

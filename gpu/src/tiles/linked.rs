@@ -49,6 +49,7 @@ pub(super) fn of_rows(
         attempts: all,
         capacity: all,
     };
+    let mut left = all.saturating_add(1);
     for (y, x) in (0..band.rows).flat_map(|y| (0..width).map(move |x| (y, x))) {
         let tile = y / SIDE * across + x / SIDE;
         let list = lists[(tile * WORKGROUP + y % SIDE * SIDE + x % SIDE) as usize];
@@ -56,11 +57,13 @@ pub(super) fn of_rows(
             0 => list.start.wrapping_add(rows[(tile * ROWS + i) as usize]),
             _ => (list.start & !CONTIGUOUS).wrapping_add(i),
         };
-        let length = if list.start & CONTIGUOUS == 0 {
-            list.length.min(ROWS)
-        } else {
-            list.length.min(all)
+        let most = match list.start & CONTIGUOUS {
+            0 => ROWS,
+            _ => all,
         };
+        // Lists that claim more entries than there are share some, which whoever compares finds out.
+        let length = list.length.min(most).min(left);
+        left -= length;
         let mut slots = (0..length).map(slot);
         let mut last = slots.next().unwrap_or(EOL);
         linked.heads.push(last);

@@ -4,7 +4,7 @@ use triptych_spec::tiles::ROWS;
 
 use super::Tiled;
 use super::room::{Longest, Room};
-use crate::dispatch::Ready;
+use crate::dispatch::{GROUPS_MAX, Ready};
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::lists::long_passes;
@@ -41,6 +41,14 @@ impl Room<'_, '_> {
         }
         passes.push(self.pass("shade_sort", self.of_tiles(), self.tiles)?);
         let groups = length.div_ceil(WORKGROUP);
+        let needed = u64::from(groups) * u64::from(count);
+        let all = u32::try_from(needed).ok().filter(|all| *all <= GROUPS_MAX);
+        let all = all.ok_or_else(|| GpuError::Limit {
+            adapter: self.rasterizer.gpu.name.clone(),
+            what: "workgroups for the longest lists",
+            needed,
+            limit: GROUPS_MAX.into(),
+        })?;
         let mut long: Vec<_> = long_passes(["shade_runs", "shade_merge"], length).collect();
         if long.len() % 2 == 1 {
             // What is in order is copied back to where all other lists are.
@@ -48,11 +56,12 @@ impl Room<'_, '_> {
         }
         for (entry, run) in long {
             let tiled = Tiled {
+                items: count,
                 run,
                 groups,
                 ..Tiled::default()
             };
-            passes.push(self.pass(entry, tiled, groups * count)?);
+            passes.push(self.pass(entry, tiled, all)?);
             self.swap();
         }
         Ok(passes)

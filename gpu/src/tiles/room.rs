@@ -108,11 +108,16 @@ impl<'r, 'g> Room<'r, 'g> {
         own.sum::<u64>() + self.in_tiles.size()
     }
 
-    /// What the kernels found out of the lists.
-    pub(super) fn longest(&self) -> Result<Longest, GpuError> {
+    /// What the kernels found out of the lists, which hold so many entries. A kernel of a user's may
+    /// have written anything.
+    pub(super) fn longest(&self, entries: u32) -> Result<Longest, GpuError> {
         let gpu = self.rasterizer.gpu;
         let words: Vec<Longest> = gpu.read(self.get("longest"), 1)?;
-        Ok(words[0])
+        Ok(Longest {
+            length: words[0].length.min(entries),
+            kernels: words[0].kernels,
+            count: words[0].count.min(self.lists),
+        })
     }
 
     /// Exchanges the entries with those that the last pass left in order.
@@ -153,8 +158,8 @@ impl<'r, 'g> Room<'r, 'g> {
     }
 
     /// Counts the triangles of each tile, and where its bin begins.
-    pub(super) fn count_bins(&self, opaque: bool) -> Result<Vec<Ready>, GpuError> {
-        let tiled = self.of_triangles(opaque, 0);
+    pub(super) fn count_bins(&self) -> Result<Vec<Ready>, GpuError> {
+        let tiled = self.of_triangles(0);
         let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
         let small = self.pass_with("bin_count", tiled, tiled.items.div_ceil(WORKGROUP), &others)?;
         let small = small.after_clearing(self.in_tiles.clone());
@@ -167,8 +172,8 @@ impl<'r, 'g> Room<'r, 'g> {
     }
 
     /// Fills the bins, which have room for so many triangles.
-    pub(super) fn fill_bins(&self, opaque: bool, binned: u32) -> Result<Vec<Ready>, GpuError> {
-        let tiled = self.of_triangles(opaque, binned);
+    pub(super) fn fill_bins(&self, binned: u32) -> Result<Vec<Ready>, GpuError> {
+        let tiled = self.of_triangles(binned);
         let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
         Ok(vec![
             self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
@@ -176,11 +181,10 @@ impl<'r, 'g> Room<'r, 'g> {
         ])
     }
 
-    fn of_triangles(&self, opaque: bool, capacity: u32) -> Tiled {
+    fn of_triangles(&self, capacity: u32) -> Tiled {
         let prims = self.rasterizer.prims();
         Tiled {
             items: prims,
-            opaque: opaque.into(),
             capacity,
             groups: groups(prims, self.tiles),
             ..Tiled::default()

@@ -2,8 +2,9 @@
 
 use triptych_spec::tiles::ROWS;
 
+use super::attempt::BINNED_MAX;
 use super::room::Room;
-use super::{Options, attempt};
+use super::{DRAWN, Options, attempt};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -47,19 +48,28 @@ impl<'r, 'g> Timed<'r, 'g> {
     ) -> Result<Self, GpuError> {
         let gpu = rasterizer.gpu;
         let mut room = attempt::room(rasterizer, options, Band::whole(rasterizer.size))?;
-        let (bins, _) = attempt::bins(&mut room, false)?;
+        let (bins, _) = attempt::count_bins(&room)?;
         let binned = bins.last().copied().unwrap_or(0);
-        let drawn = (attempt::longest(&bins), options.drawn);
+        if binned > BINNED_MAX {
+            return Err(GpuError::Limit {
+                adapter: gpu.name.clone(),
+                what: "triangles in tiles",
+                needed: binned.into(),
+                limit: BINNED_MAX.into(),
+            });
+        }
+        attempt::fill_bins(&mut room, binned)?;
+        let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
         attempt::submit(&room, &room.place_lists(drawn)?)?;
         let fragments = gpu.word(room.get("counter"), 0)?;
-        let longest = room.longest()?;
+        let longest = room.longest(fragments)?;
         let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
         room.set("listed", entries()?);
         if longest.length > ROWS {
             room.set("merged", entries()?);
         }
-        let mut bin = room.count_bins(false)?;
-        bin.extend(room.fill_bins(false, binned)?);
+        let mut bin = room.count_bins()?;
+        bin.extend(room.fill_bins(binned)?);
         let mut spans = vec![
             (Span::Bin, bin),
             (Span::Place, room.place_lists(drawn)?),

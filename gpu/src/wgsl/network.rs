@@ -10,13 +10,42 @@ use std::fmt::Write;
 /// Entries that the networks sort.
 pub const SIZES: [u32; 4] = [8, 16, 32, 64];
 
-/// The file `network`: for each size a function that sorts and blends a list of at most as many.
+/// The file `network`: for each size a kernel that sorts and blends lists of at most as many.
 pub(super) fn text() -> String {
     let mut text = String::from("// Lists of a few entries, sorted in registers and blended.\n");
+    let mut smaller = 0;
     for size in SIZES {
-        shaded(&mut text, size).expect("a string takes all that is written");
+        let written = shaded(&mut text, size).and_then(|()| entry(&mut text, smaller, size));
+        written.expect("a string takes all that is written");
+        smaller = size;
     }
     text
+}
+
+/// The kernel of stage shade that takes lists of more entries than the next smaller size has; the
+/// smallest takes empty ones as well.
+fn entry(text: &mut String, smaller: u32, size: u32) -> std::fmt::Result {
+    let more = match smaller {
+        0 => String::new(),
+        n => format!(" && own.run.length > {n}u"),
+    };
+    write!(
+        text,
+        "
+@compute @workgroup_size(WORKGROUP)
+fn shade_{size}(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {{
+    let own = pixel_at(chunk_of(group, groups), lane);
+    let in_rows = own.pixel != NOWHERE && own.run.row != CONTIGUOUS;
+    if in_rows && own.run.length <= {size}u{more} {{
+        shown(own.pixel, shaded_{size}(own.run, own.end));
+    }}
+}}
+"
+    )
 }
 
 /// Reads a list, puts it in order, writes it back if that is asked for, and blends what lies in

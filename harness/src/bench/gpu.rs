@@ -14,7 +14,6 @@ use super::scene::Measured;
 use super::tiles::ByTiles;
 use super::{AWAKE, Method};
 use crate::compare::compare;
-use crate::compare::image;
 use crate::compare::lists::certify;
 use crate::compare::order;
 use crate::observe::{Gpu, Observed, Spec};
@@ -111,19 +110,9 @@ impl<'r> Leg<'r> {
             let seen = picture.iter().map(|pixel| pixel.map(f64::from));
             errors.push((part, self.grid.error(seen)));
             let (method, layers) = self.variant(part);
-            let must = self.grid.picture(layers);
-            let width = self.grid.run.primitives.size.width;
-            let seen = Observed::<Gpu, _>::new(self.label.clone(), picture);
-            let judgement = compare(must, &seen, |a, b| image::compare(a, b, width));
-            if judgement.differ() > 0 || judgement.compared == 0 {
-                let first = judgement.described.first().cloned().unwrap_or_default();
-                let (differ, compared) = (judgement.differ(), judgement.compared);
-                wrong.get_or_insert(format!(
-                    "{}, {layers} layers by {}: {differ} of {compared} channels differ; {first}",
-                    self.label,
-                    method.name(),
-                ));
-            }
+            wrong = wrong
+                .take()
+                .or_else(|| self.grid.wrong(&self.label, layers, method, picture));
         })?;
         if let Some(tiles) = &self.tiles {
             tiles.compare(&self.label)?;
@@ -215,7 +204,7 @@ impl<'r> Leg<'r> {
 
 /// Compares the sorted lists with the spec's: pictures hide an order that changes no
 /// colour.
-fn sorted(label: &str, lists: &Lists, grid: &Grid) -> Result<(), Refusal> {
+pub(super) fn sorted(label: &str, lists: &Lists, grid: &Grid) -> Result<(), Refusal> {
     let must = Observed::<Spec, _>::new("spec", &grid.run.sorted);
     let seen = Observed::<Gpu, _>::new(label, lists);
     let width = grid.run.primitives.size.width;

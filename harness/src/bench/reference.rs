@@ -5,9 +5,11 @@ use triptych_spec::bound::Bounded;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::primitives;
 
+use super::Method;
 use super::counts::Counts;
 use super::error::{Error, psnr};
-use crate::observe::{Observed, Spec};
+use crate::compare::{compare, image};
+use crate::observe::{Gpu, Observed, Spec};
 use crate::plan::Plan;
 use crate::replay::spec::SpecRun;
 
@@ -57,6 +59,28 @@ impl Grid {
     pub(super) fn picture(&self, layers: u32) -> &Picture {
         let drawn = self.pictures.iter().find(|(n, _)| *n == layers);
         drawn.map_or(&self.exact, |(_, picture)| picture)
+    }
+
+    /// What is wrong with a leg's picture of so many nearest layers.
+    pub(super) fn wrong(
+        &self,
+        label: &str,
+        layers: u32,
+        method: Method,
+        picture: Vec<[f32; 3]>,
+    ) -> Option<String> {
+        let width = self.run.primitives.size.width;
+        let seen = Observed::<Gpu, _>::new(label, picture);
+        let must = self.picture(layers);
+        let judgement = compare(must, &seen, |a, b| image::compare(a, b, width));
+        let (differ, compared) = (judgement.differ(), judgement.compared);
+        (differ > 0 || compared == 0).then(|| {
+            let first = judgement.described.first().cloned().unwrap_or_default();
+            let method = method.name();
+            format!(
+                "{label}, {layers} layers by {method}: {differ} of {compared} channels differ; {first}"
+            )
+        })
     }
 
     /// How far a picture is from the exact one.

@@ -7,12 +7,9 @@ use triptych_gpu::timer::{Clock, Timer};
 
 use super::Method;
 use super::error::Error;
-use super::gpu::Refusal;
+use super::gpu::{Refusal, sorted};
 use super::reference::Grid;
 use super::scene::Measured;
-use crate::compare::compare;
-use crate::compare::image;
-use crate::observe::{Gpu, Observed};
 
 /// A leg's frame by tiles.
 pub(super) struct ByTiles<'r> {
@@ -41,6 +38,14 @@ impl<'r> ByTiles<'r> {
             capacity: None,
             drawn: tiles::DRAWN,
         };
+        let drawn = tiles::run(rasterizer, options)?;
+        for band in &drawn.bands {
+            // A target that needs several is refused below.
+            let whole = drawn.bands.len() == 1;
+            if let Some(lists) = band.sorted.as_ref().filter(|_| whole) {
+                sorted(label, lists, grid)?;
+            }
+        }
         let timed = Timed::new(rasterizer, &options, &grid.layers)?;
         let (seen, must) = (u64::from(timed.fragments), grid.counts.fragments);
         if seen != must {
@@ -65,21 +70,12 @@ impl<'r> ByTiles<'r> {
     pub(super) fn compare(&self, label: &str) -> Result<Vec<(u32, Error)>, Refusal> {
         let mut errors = Vec::new();
         let mut wrong = None;
-        let width = self.grid.run.primitives.size.width;
         self.timed.pictures(|layers, picture| {
             let seen = picture.iter().map(|pixel| pixel.map(f64::from));
             errors.push((layers, self.grid.error(seen)));
-            let seen = Observed::<Gpu, _>::new(label, picture);
-            let must = self.grid.picture(layers);
-            let judgement = compare(must, &seen, |a, b| image::compare(a, b, width));
-            if judgement.differ() > 0 || judgement.compared == 0 {
-                let first = judgement.described.first().cloned().unwrap_or_default();
-                let (differ, compared) = (judgement.differ(), judgement.compared);
-                wrong.get_or_insert(format!(
-                    "{label}, {layers} layers by tiles: {differ} of {compared} channels differ; \
-                     {first}"
-                ));
-            }
+            wrong = wrong
+                .take()
+                .or_else(|| self.grid.wrong(label, layers, Method::Tiles, picture));
         })?;
         match wrong {
             Some(words) => Err(Refusal::Wrong(words)),

@@ -17,9 +17,8 @@ pub(super) const BIN: Stage = Stage {
     ],
     fragment: &[],
     contract: "Counts the triangles of each tile of 8 x 8 pixels, adds the counts up to offsets, \
-        and fills `binned`: a triangle of tiled.items whose face is opaque if tiled.opaque says \
-        so, else one whose is not. Those of many tiles go to `larges` in the first pass, and are \
-        shared by workgroups in the second.",
+        and fills `binned`: those of tiled.items triangles whose faces are transparent. What is in many \
+        tiles goes to `larges` in the first pass, and is shared by workgroups in the second.",
 };
 
 /// Lists of a tile, side by side.
