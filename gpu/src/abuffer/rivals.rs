@@ -84,7 +84,7 @@ impl Surfaces {
         }
     }
 
-    fn named(&self) -> [(&'static str, &wgpu::Buffer); 2] {
+    pub(crate) fn named(&self) -> [(&'static str, &wgpu::Buffer); 2] {
         [("opaque_key", &self.key), ("opaque_prim", &self.prim)]
     }
 }
@@ -118,7 +118,11 @@ fn frame(rasterizer: &Rasterizer<'_>, band: Band, [r, g, b]: [f32; 3]) -> Frame 
 }
 
 /// The picture of so many pixels.
-fn image(gpu: &Gpu, picture: &wgpu::Buffer, pixels: u32) -> Result<Vec<[f32; 3]>, GpuError> {
+pub(crate) fn image(
+    gpu: &Gpu,
+    picture: &wgpu::Buffer,
+    pixels: u32,
+) -> Result<Vec<[f32; 3]>, GpuError> {
     let picture: Vec<[f32; 4]> = gpu.read(picture, pixels as usize)?;
     Ok(picture.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
 }

@@ -9,6 +9,7 @@ use super::linked;
 use super::room::Room;
 use super::{DRAWN, Drawn, Options, Times};
 use crate::abuffer::BandResult;
+use crate::abuffer::rivals::{Surfaces, image};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
@@ -63,19 +64,11 @@ pub(super) fn room<'r, 'g>(
         background: [r, g, b, 1.0],
         ..rasterizer.frame(band)
     };
-    let gpu = rasterizer.gpu;
     let mut room = Room::new(rasterizer, band, frame)?;
-    let first = (band.first * rasterizer.size.width) as usize;
-    let pixels = first..first + band.pixels(rasterizer.size) as usize;
-    let opaque = options.opaque;
-    room.set(
-        "opaque_key",
-        gpu.upload("opaque keys", &opaque.key[pixels.clone()])?,
-    );
-    room.set(
-        "opaque_prim",
-        gpu.upload("opaque triangles", &opaque.prim[pixels])?,
-    );
+    let surfaces = Surfaces::upload(rasterizer, options.opaque, band)?;
+    for (name, buffer) in surfaces.named() {
+        room.set(name, buffer.clone());
+    }
     Ok(room)
 }
 
@@ -153,9 +146,8 @@ pub(super) fn longest(offsets: &[u32]) -> u32 {
 }
 
 pub(super) fn picture(room: &Room<'_, '_>) -> Result<Vec<[f32; 3]>, GpuError> {
-    let pixels = (room.frame.width * room.frame.rows) as usize;
-    let picture: Vec<[f32; 4]> = room.rasterizer.gpu.read(room.get("picture"), pixels)?;
-    Ok(picture.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+    let pixels = room.frame.width * room.frame.rows;
+    image(room.rasterizer.gpu, room.get("picture"), pixels)
 }
 
 pub(super) fn submit(room: &Room<'_, '_>, passes: &[Ready]) -> Result<Duration, GpuError> {

@@ -128,7 +128,10 @@ impl<'r, 'g> Following<'r, 'g> {
         if gpu.word(self.buffer("unfinished"), 0)? != 0 {
             return Err(GpuError::Endless {
                 adapter: gpu.name.clone(),
-                stage: "density",
+                stage: match self.after.is_empty() {
+                    true => "density",
+                    false => "defocus",
+                },
             });
         }
         let pixels = Band::whole(rasterizer.size).pixels(rasterizer.size);
