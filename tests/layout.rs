@@ -16,7 +16,7 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 17] = [
+const ROOTS: [&str; 18] = [
     "abuffer",
     "alpha",
     "ceiling",
@@ -26,6 +26,7 @@ const ROOTS: [&str; 17] = [
     "grid",
     "hbao",
     "ldm",
+    "local",
     "multisample",
     "nearest",
     "peel",

@@ -36,8 +36,9 @@ fn box_of(s: Setup) -> Box {
     return Box(begin, size.x, size.x * size.y);
 }
 
-fn tile_in(box: Box, i: u32) -> u32 {
-    return (box.first.y + i / box.across) * tiles_across() + box.first.x + i % box.across;
+// Column and row of a tile of a box.
+fn tile_in(box: Box, i: u32) -> vec2<u32> {
+    return box.first + vec2(i % box.across, i / box.across);
 }
 
 // Whether it is transparent.
@@ -45,11 +46,8 @@ fn is_drawn(prim: u32) -> bool {
     return faces[prim].a < 1.0;
 }
 
-fn holds(s: Setup, tile: u32) -> bool {
-    return meets(edges_of(0u, s, first_sample(tile)));
-}
-
-fn list_triangle(tile: u32, prim: u32, fill: bool) {
+fn list_triangle(at: vec2<u32>, prim: u32, fill: bool) {
+    let tile = at.y * tiles_across() + at.x;
     if !fill {
         atomicAdd(&counts[tile], 1u);
         return;
@@ -73,9 +71,10 @@ fn bin_small(prim: u32, fill: bool) {
         }
         return;
     }
+    let reach = reach_of(s);
     for (var i = 0u; i < box.tiles; i += 1u) {
         let tile = tile_in(box, i);
-        if holds(s, tile) {
+        if meets(reach, tile) {
             list_triangle(tile, prim, fill);
         }
     }
@@ -93,11 +92,34 @@ fn bin_large(group: u32, lane: u32, fill: bool) {
         let prim = larges.prims[i];
         let s = prepare(prim);
         let box = box_of(s);
+        let reach = reach_of(s);
         for (var at = group % share * WORKGROUP + lane; at < box.tiles; at += share * WORKGROUP) {
             let tile = tile_in(box, at);
-            if holds(s, tile) {
+            if meets(reach, tile) {
                 list_triangle(tile, prim, fill);
             }
         }
+    }
+}
+
+// A bin in the order in which its triangles lie at about the tile's middle, nearest first, so that most
+// lists are filled in order. What is not exact about it costs time only. Longer bins are left as they are.
+fn sort_bin(tile: u32, lane: u32) {
+    if lane == 0u {
+        bin_bounds = bin_of(tile);
+    }
+    let bin = workgroupUniformLoad(&bin_bounds);
+    let length = bin.y - bin.x;
+    if length < 2u || length > LONG {
+        return;
+    }
+    let middle = first_sample(tile) + ((i32(SIDE) / 2) << frame.bits);
+    for (var i = lane; i < length; i += WORKGROUP) {
+        let prim = binned[bin.x + i];
+        own_values[i] = vec2(bitcast<u32>(key_about(prepare(prim), middle)), prim);
+    }
+    sort_values(length, lane);
+    for (var i = lane; i < length; i += WORKGROUP) {
+        binned[bin.x + i] = own_values[i].y;
     }
 }

@@ -4,14 +4,14 @@
 //
 // A tile with a list of more than ROWS entries keeps its lists one after another instead. Imported
 // where there are `listed` and `opaque_key`.
-//#import tile
+//#import draw
 //#import counter
 
 struct List {
     // Its first entry, and CONTIGUOUS.
     start: u32,
     length: u32,
-    // How far it is filled, where that takes several dispatches.
+    // How far it is filled, and IN_ORDER.
     filled: u32,
 }
 
@@ -33,6 +33,9 @@ struct Longest {
 
 const CONTIGUOUS: u32 = 0x80000000u;
 
+// Each entry is nearer than the next.
+const IN_ORDER: u32 = 0x80000000u;
+
 // Entries of the longest list of a tile with rows.
 const ROWS: u32 = 64u;
 
@@ -42,12 +45,13 @@ struct Run {
     length: u32,
     // Where its tile's rows are, or CONTIGUOUS.
     row: u32,
+    in_order: bool,
 }
 
 fn run_at(tile: u32, lane: u32) -> Run {
     let list = lists[tile * WORKGROUP + lane];
     let row = select(tile * ROWS, CONTIGUOUS, (list.start & CONTIGUOUS) != 0u);
-    return Run(list.start & ~CONTIGUOUS, list.length, row);
+    return Run(list.start & ~CONTIGUOUS, list.length, row, (list.filled & IN_ORDER) != 0u);
 }
 
 fn slot(run: Run, i: u32) -> u32 {
@@ -57,175 +61,193 @@ fn slot(run: Run, i: u32) -> u32 {
     return run.start + rows[run.row + i];
 }
 
-// No opaque surface: farther than every key.
-const NOTHING: u32 = 0xffffffffu;
-
-// A triangle of no more pixels than this in a tile is drawn by the invocation that looks at it.
-const SPOT: i32 = 8;
-
-// The larger triangles of a batch, which are drawn by all of a workgroup.
-var<workgroup> edges: array<Edges, WORKGROUP>;
-var<workgroup> planes: array<Plane, WORKGROUP>;
-var<workgroup> batch: atomic<u32>;
-var<workgroup> batch_size: u32;
-
-// Of each pixel of a tile: the key from which on fragments are not kept, how many were, where they go.
-var<workgroup> ends: array<u32, WORKGROUP>;
-var<workgroup> kept: array<atomic<u32>, WORKGROUP>;
-var<workgroup> runs: array<Run, WORKGROUP>;
-
-// A tile's triangles of this dispatch.
-var<workgroup> bin_bounds: vec2<u32>;
-
-fn end_at(pixel: u32) -> u32 {
-    if pixel == NOWHERE {
-        return 0u;
-    }
-    if frame.depth_test == 0u {
-        return NOTHING;
-    }
-    return opaque_key[pixel];
+// What an invocation keeps of its list while it is filled.
+struct Held {
+    run: Run,
+    // The last fragment, and whether each was nearer than the next.
+    last: Listed,
+    in_order: bool,
 }
 
-// Draws a tile: its fragments are counted, or put in lists. All of a workgroup come along.
-fn draw(tile: u32, lane: u32, fill: bool) {
-    let list = tile * WORKGROUP + lane;
-    let at = vec2<i32>(vec2(lane % SIDE, lane / SIDE));
-    let sample = first_sample(tile);
-    ends[lane] = end_at(pixel_of(tile, lane));
-    if lane == 0u {
-        let first = bins[tile] + tiled.first;
-        bin_bounds = vec2(first, min(bins[tile + 1u], first + tiled.count));
-    }
-    var before = 0u;
+// Fragments of each pixel of a tile.
+var<workgroup> kept: array<atomic<u32>, WORKGROUP>;
+// How many entries of a tile lie before each row.
+var<workgroup> own_rows: array<u32, ROWS>;
+
+// Kernels of stage shade that take any of a tile's lists.
+var<workgroup> kernels_here: atomic<u32>;
+
+fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
+    let list = (*own).tile * WORKGROUP + (*own).lane;
+    (*own).held.in_order = tiled.first == 0u;
     if fill {
-        runs[lane] = run_at(tile, lane);
+        let run = run_at((*own).tile, (*own).lane);
+        (*own).held.run = run;
+        if run.row != CONTIGUOUS {
+            own_rows[(*own).lane] = rows[run.row + (*own).lane];
+        }
     }
     if tiled.first > 0u {
-        before = select(lists[list].length, lists[list].filled, fill);
+        (*own).count = select(lists[list].length, lists[list].filled & ~IN_ORDER, fill);
     }
-    atomicStore(&kept[lane], before);
-    let bin = workgroupUniformLoad(&bin_bounds);
-    for (var first = bin.x; first < bin.y; first += WORKGROUP) {
-        if lane == 0u {
-            atomicStore(&batch, 0u);
-        }
-        workgroupBarrier();
-        if first + lane < bin.y {
-            draw_spot(binned[first + lane], sample, fill);
-        }
-        workgroupBarrier();
-        if lane == 0u {
-            batch_size = atomicLoad(&batch);
-        }
-        let size = workgroupUniformLoad(&batch_size);
-        for (var i = 0u; i < size; i += 1u) {
-            if edges[i].full != 0u || covers(edges[i], at) {
-                keep(i, lane, at, fill);
-            }
-        }
-    }
-    workgroupBarrier();
-    if fill {
-        lists[list].filled = atomicLoad(&kept[lane]);
-    } else {
-        lists[list].length = atomicLoad(&kept[lane]);
-    }
+    atomicStore(&kept[(*own).lane], (*own).count);
 }
 
-// A triangle by itself, unless it is larger.
-fn draw_spot(prim: u32, sample: vec2<i32>, fill: bool) {
-    let s = prepare(prim);
-    let own = edges_of(prim, s, sample);
-    let spot = spot_of(s, sample);
-    if spot.pixels > SPOT {
-        let i = atomicAdd(&batch, 1u);
-        edges[i] = own;
-        if fill || frame.depth_test != 0u {
-            planes[i] = plane_of(s, sample);
-        }
-        return;
-    }
-    for (var i = 0; i < spot.pixels; i += 1) {
-        let at = spot.first + vec2(i % spot.across, i / spot.across);
-        if covers(own, at) {
-            var key = 0u;
-            if fill || frame.depth_test != 0u {
-                key = sample_key(own, plane_of(s, sample), at);
-            }
-            store(u32(at.y) * SIDE + u32(at.x), key, prim, fill);
-        }
-    }
-}
-
-// A fragment of a larger triangle.
-fn keep(i: u32, lane: u32, at: vec2<i32>, fill: bool) {
-    var key = 0u;
-    if fill || frame.depth_test != 0u {
-        key = sample_key(edges[i], planes[i], at);
-    }
-    store(lane, key, edges[i].prim, fill);
-}
-
-fn store(pixel: u32, key: u32, prim: u32, fill: bool) {
-    if key >= ends[pixel] {
-        return;
-    }
+fn put_small(tile: u32, pixel: u32, entry: Listed, fill: bool) {
     let i = atomicAdd(&kept[pixel], 1u);
     if fill {
-        let address = slot(runs[pixel], i);
-        if address < tiled.capacity {
-            listed[address] = vec2(key, prim);
-        }
+        write(run_at(tile, pixel), i, entry);
     }
 }
 
-// Which kernel of stage shade takes a list: those of up to 8, 16, 32, 64 entries, and of more.
-fn kernel_of(length: u32) -> u32 {
-    return u32(length > 8u) + u32(length > 16u) + u32(length > 32u) + u32(length > ROWS);
+fn take_small(own: ptr<function, Pixel>) {
+    let count = atomicLoad(&kept[(*own).lane]);
+    (*own).held.in_order = (*own).held.in_order && count == (*own).count;
+    (*own).count = count;
 }
 
-var<workgroup> tile_lengths: array<u32, WORKGROUP>;
+fn put(own: ptr<function, Pixel>, entry: Listed, fill: bool) {
+    if fill {
+        write((*own).held.run, (*own).count, entry);
+        let follows = (*own).count == 0u || less((*own).held.last, entry);
+        (*own).held.in_order = (*own).held.in_order && follows;
+        (*own).held.last = entry;
+    }
+    (*own).count += 1u;
+}
+
+fn leave_pixel(own: Pixel) {
+    atomicStore(&kept[own.lane], own.count);
+}
+
+fn write(run: Run, i: u32, entry: Listed) {
+    var address = run.start + i;
+    if run.row != CONTIGUOUS {
+        address = run.start + own_rows[i];
+    }
+    if address < tiled.capacity {
+        listed[address] = entry;
+    }
+}
+
+fn count_lists(tile: u32, lane: u32) {
+    lists[tile * WORKGROUP + lane].length = draw(tile, lane, false).count;
+}
+
+fn fill_lists(tile: u32, lane: u32) {
+    if lane == 0u {
+        atomicStore(&kernels_here, 0u);
+    }
+    var own = draw(tile, lane, true);
+    let in_order = own.held.in_order || own.count < 2u;
+    lists[tile * WORKGROUP + lane].filled = own.count | select(0u, IN_ORDER, in_order);
+    atomicOr(&kernels_here, 1u << kernel_of(own.held.run, own.count, in_order));
+    workgroupBarrier();
+    if lane == 0u {
+        atomicOr(&longest.kernels, atomicLoad(&kernels_here));
+    }
+}
+
+// Which kernel of stage shade takes a list: those of up to 8, 16, 32, 64 entries, of lists that lie
+// one after another, and of lists in order.
+fn kernel_of(run: Run, length: u32, in_order: bool) -> u32 {
+    if run.row == CONTIGUOUS {
+        return 4u;
+    }
+    let by_length = u32(length > 8u) + u32(length > 16u) + u32(length > 32u);
+    return select(by_length, 5u, in_order);
+}
+
+// Of each length up to ROWS, the lists of a tile that have it, a bit each.
+var<workgroup> alike: array<atomic<u32>, 130>;
+var<workgroup> longest_here: atomic<u32>;
+var<workgroup> longest_of_tile: u32;
+var<workgroup> partial: array<u32, WORKGROUP>;
 var<workgroup> first_of_tile: u32;
+
+// How many of the bits before number `lane` are set.
+fn ones_before(bits: vec2<u32>, lane: u32) -> u32 {
+    let below = (1u << (lane % 32u)) - 1u;
+    if lane < 32u {
+        return countOneBits(bits.x & below);
+    }
+    return countOneBits(bits.x) + countOneBits(bits.y & below);
+}
+
+// The sum of a value up to this invocation's own.
+fn sum_up_to(value: u32, lane: u32) -> u32 {
+    var sum = value;
+    for (var reach = 1u; reach < WORKGROUP; reach *= 2u) {
+        workgroupBarrier();
+        partial[lane] = sum;
+        workgroupBarrier();
+        if lane >= reach {
+            sum += partial[lane - reach];
+        }
+    }
+    return sum;
+}
 
 // All of a workgroup come along. The host has made sure that no sum is beyond SATURATED: a band's
 // bins hold at most 2^25 triangles.
 fn place_lists(tile: u32, lane: u32) {
     let list = tile * WORKGROUP + lane;
     let length = lists[list].length;
-    tile_lengths[lane] = length;
-    workgroupBarrier();
-    var most = 0u;
-    var all = 0u;
-    var before = 0u;    // entries of lists before this one
-    var rank = 0u;      // lists that are longer, or as long and before it
-    var row = 0u;       // entries in rows before row `lane`
-    var kernels = 0u;
-    for (var i = 0u; i < WORKGROUP; i += 1u) {
-        let other = tile_lengths[i];
-        most = max(most, other);
-        all += other;
-        before += select(0u, other, i < lane);
-        rank += u32(other > length || (other == length && i < lane));
-        row += min(other, lane);
-        kernels |= 1u << kernel_of(other);
-    }
-    if most > ROWS {
-        kernels = 1u << kernel_of(most);
+    for (var i = lane; i < 130u; i += WORKGROUP) {
+        atomicStore(&alike[i], 0u);
     }
     if lane == 0u {
-        first_of_tile = atomicAdd(&counter, all);
-        atomicMax(&longest.length, most);
-        atomicOr(&longest.kernels, kernels);
+        atomicStore(&longest_here, 0u);
     }
-    let first = workgroupUniformLoad(&first_of_tile);
-    if most <= ROWS {
-        lists[list].start = first + rank;
-        rows[tile * ROWS + lane] = row;
-        return;
+    workgroupBarrier();
+    atomicMax(&longest_here, length);
+    atomicOr(&alike[2u * min(length, ROWS) + lane / 32u], 1u << (lane % 32u));
+    workgroupBarrier();
+    if lane == 0u {
+        longest_of_tile = atomicLoad(&longest_here);
+        atomicMax(&longest.length, longest_of_tile);
     }
-    lists[list].start = (first + before) | CONTIGUOUS;
+    if workgroupUniformLoad(&longest_of_tile) > ROWS {
+        place_runs(list, length, lane);
+    } else {
+        place_rows(tile, list, length, lane);
+    }
+}
+
+// One list after another.
+fn place_runs(list: u32, length: u32, lane: u32) {
+    let end = sum_up_to(length, lane);
+    if lane == WORKGROUP - 1u {
+        first_of_tile = atomicAdd(&counter, end);
+    }
+    lists[list].start = (workgroupUniformLoad(&first_of_tile) + end - length) | CONTIGUOUS;
     if length > LONG {
         longest.lists[atomicAdd(&longest.count, 1u)] = list;
     }
+}
+
+fn alike_at(length: u32) -> vec2<u32> {
+    return vec2(atomicLoad(&alike[2u * length]), atomicLoad(&alike[2u * length + 1u]));
+}
+
+// In rows: lane l looks after row l as well, of the lists that are longer than l.
+fn place_rows(tile: u32, list: u32, length: u32, lane: u32) {
+    // Lengths from the longest down.
+    let down = alike_at(ROWS - lane);
+    let longer = sum_up_to(countOneBits(down.x) + countOneBits(down.y), lane);
+    workgroupBarrier();
+    partial[ROWS - 1u - lane] = longer;
+    workgroupBarrier();
+    let in_row = partial[lane];
+    // Lists that are longer, or as long and before this one.
+    var rank = ones_before(alike_at(length), lane);
+    if length < ROWS {
+        rank += partial[length];
+    }
+    let end = sum_up_to(in_row, lane);
+    rows[tile * ROWS + lane] = end - in_row;
+    if lane == WORKGROUP - 1u {
+        first_of_tile = atomicAdd(&counter, end);
+    }
+    lists[list].start = workgroupUniformLoad(&first_of_tile) + rank;
 }

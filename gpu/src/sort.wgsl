@@ -65,17 +65,26 @@ fn sort_short(start: u32, end: u32) {
     }
 }
 
-// Batcher's bitonic sort, up to the next power of two; what is not there is largest.
 fn sort_long(start: u32, length: u32, lane: u32) {
-    var size = 2u * RUN;
+    for (var i = lane; i < length; i += WORKGROUP) {
+        own_values[i] = listed[start + i];
+    }
+    sort_values(length, lane);
+    for (var i = lane; i < length; i += WORKGROUP) {
+        listed[start + i] = own_values[i];
+    }
+    workgroupBarrier();
+}
+
+// The first of a workgroup's values, in order: Batcher's bitonic sort, up to the next power of two;
+// what is not there is largest.
+fn sort_values(length: u32, lane: u32) {
+    var size = 2u;
     while size < length {
         size *= 2u;
     }
-    for (var i = lane; i < size; i += WORKGROUP) {
+    for (var i = length + lane; i < size; i += WORKGROUP) {
         own_values[i] = LAST;
-        if i < length {
-            own_values[i] = listed[start + i];
-        }
     }
     workgroupBarrier();
     for (var block = 2u; block <= size; block *= 2u) {
@@ -86,10 +95,6 @@ fn sort_long(start: u32, length: u32, lane: u32) {
             workgroupBarrier();
         }
     }
-    for (var i = lane; i < length; i += WORKGROUP) {
-        listed[start + i] = own_values[i];
-    }
-    workgroupBarrier();
 }
 
 // Two values in order, or in the reverse; by the first of both.

@@ -1,7 +1,7 @@
 // A tile of 8 x 8 pixels, drawn by a workgroup: an invocation owns a pixel, so that what is kept of it
 // needs no atomics, and what depends on a triangle alone is worked out once for 64 pixels.
 // Imported where there are `bins`. Twin: spec/src/tiles.rs.
-//#import triangle
+//#import steps
 
 // Pixels along a side.
 const SIDE: u32 = 8u;
@@ -23,6 +23,18 @@ struct Tiled {
 // Where the triangles of each tile begin, and the end of the last; and the triangles.
 @group(0) @binding(14) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(15) var<storage, read_write> binned: array<u32>;
+
+// In `bins`: the tile's pixels are done. No bin begins so far on.
+const FINISHED: u32 = 0x80000000u;
+
+fn bin_of(tile: u32) -> vec2<u32> {
+    return vec2(bins[tile], bins[tile + 1u]) & vec2(~FINISHED);
+}
+
+// Whether there is such a tile that is not done.
+fn is_left(tile: u32) -> bool {
+    return tile < tiled.items && (bins[tile] & FINISHED) == 0u;
+}
 
 fn tiles_across() -> u32 {
     return (frame.width + SIDE - 1u) / SIDE;
@@ -64,8 +76,10 @@ struct Edges {
     prim: u32,
     columns: vec3<i32>,
     // Whether it covers all of the tile.
-    full: u32,
+    is_full: u32,
     rows: vec3<i32>,
+    // Whether some of its fragments may lie behind what is opaque.
+    is_tested: u32,
 }
 
 const EDGE_MOST: i32 = 1 << 26u;
@@ -82,40 +96,69 @@ fn limited(value: Wide) -> i32 {
     return wide_floor(value, frame.bits);
 }
 
+// Changes of edge functions from a column to the next.
+fn columns_of(s: Setup) -> vec3<i32> {
+    return vec3(s.b.y - s.c.y, s.c.y - s.a.y, s.a.y - s.b.y);
+}
+
+// From a row to the next.
+fn rows_of(s: Setup) -> vec3<i32> {
+    return vec3(s.c.x - s.b.x, s.a.x - s.c.x, s.b.x - s.a.x);
+}
+
 fn edges_of(prim: u32, s: Setup, sample: vec2<i32>) -> Edges {
     let low = vec3(
         limited(wide_sub(edge(s.b, s.c, sample), wide(least(s.b, s.c)))),
         limited(wide_sub(edge(s.c, s.a, sample), wide(least(s.c, s.a)))),
         limited(wide_sub(edge(s.a, s.b, sample), wide(least(s.a, s.b)))),
     );
-    let columns = vec3(s.b.y - s.c.y, s.c.y - s.a.y, s.a.y - s.b.y);
-    let rows = vec3(s.c.x - s.b.x, s.a.x - s.c.x, s.b.x - s.a.x);
+    let columns = columns_of(s);
+    let rows = rows_of(s);
     let most = i32(SIDE) - 1;
     let worst = low + most * (min(columns, vec3(0)) + min(rows, vec3(0)));
-    return Edges(low, prim, columns, u32((worst.x | worst.y | worst.z) >= 0), rows);
+    return Edges(low, prim, columns, u32((worst.x | worst.y | worst.z) >= 0), rows, 1u);
+}
+
+// Edge functions of a triangle at the band's first sample, each less the least of a covered one, and
+// moved to the corner of a tile where it is largest.
+struct Reach {
+    a: Wide,
+    b: Wide,
+    c: Wide,
+    columns: vec3<i32>,
+    rows: vec3<i32>,
+}
+
+fn reach_of(s: Setup) -> Reach {
+    let sample = first_sample(0u);
+    let columns = columns_of(s);
+    let rows = rows_of(s);
+    let most = (i32(SIDE) - 1) * (max(columns, vec3(0)) + max(rows, vec3(0)));
+    return Reach(
+        farthest(s.b, s.c, sample, most.x),
+        farthest(s.c, s.a, sample, most.y),
+        farthest(s.a, s.b, sample, most.z),
+        columns,
+        rows,
+    );
+}
+
+fn farthest(a: vec3<i32>, b: vec3<i32>, sample: vec2<i32>, most: i32) -> Wide {
+    let value = wide_sub(edge(a, b, sample), wide(least(a, b)));
+    return wide_add(value, wide_shift(wide(most), frame.bits));
 }
 
 // Whether an edge leaves any sample of a tile to the triangle, for all three.
-fn meets(edges: Edges) -> bool {
-    let most = i32(SIDE) - 1;
-    let zero = vec3(0);
-    let best = edges.low + most * (max(edges.columns, zero) + max(edges.rows, zero));
-    return (best.x | best.y | best.z) >= 0;
+fn meets(reach: Reach, tile: vec2<u32>) -> bool {
+    let pixel = vec2<i32>(SIDE * tile);
+    return !(wide_negative(moved(reach.a, reach.columns.x, reach.rows.x, pixel))
+        || wide_negative(moved(reach.b, reach.columns.y, reach.rows.y, pixel))
+        || wide_negative(moved(reach.c, reach.columns.z, reach.rows.z, pixel)));
 }
 
-// What depth keys take beside.
-struct Plane {
-    ea: Wide,       // edge functions at the tile's first sample
-    eb: Wide,
-    ec: Wide,
-    area: Wide,
-    z: vec3<u32>,
-}
-
-fn plane_of(s: Setup, sample: vec2<i32>) -> Plane {
-    let ea = edge(s.b, s.c, sample);
-    let eb = edge(s.c, s.a, sample);
-    return Plane(ea, eb, edge(s.a, s.b, sample), s.area, depths(s));
+fn moved(value: Wide, column: i32, row: i32, pixel: vec2<i32>) -> Wide {
+    let change = wide_add(wide_mul(column, pixel.x), wide_mul(row, pixel.y));
+    return wide_add(value, wide_shift(change, frame.bits));
 }
 
 // Whether a triangle covers a sample of the tile.
@@ -124,20 +167,9 @@ fn covers(edges: Edges, at: vec2<i32>) -> bool {
     return (e.x | e.y | e.z) >= 0;
 }
 
-// The depth key at a covered sample.
-fn sample_key(edges: Edges, plane: Plane, at: vec2<i32>) -> u32 {
-    let change = edges.columns * at.x + edges.rows * at.y;
-    return depth_key(
-        plane.z,
-        plane.area,
-        wide_add(plane.ea, wide_shift(wide(change.x), frame.bits)),
-        wide_add(plane.eb, wide_shift(wide(change.y), frame.bits)),
-        wide_add(plane.ec, wide_shift(wide(change.z), frame.bits)),
-    );
-}
-
 // Pixels of a tile of which the samples lie within a triangle's box, and how many.
 struct Spot {
+    sample: vec2<i32>,
     first: vec2<i32>,
     across: i32,
     pixels: i32,
@@ -149,5 +181,5 @@ fn spot_of(s: Setup, sample: vec2<i32>) -> Spot {
     // Shifts round down: the first sample at or after `low`, and the last up to `high`.
     let first = max(-((-low) >> vec2(frame.bits)), vec2(0));
     let size = max(min(high >> vec2(frame.bits), vec2(i32(SIDE) - 1)) - first + 1, vec2(0));
-    return Spot(first, size.x, size.x * size.y);
+    return Spot(sample, first, size.x, size.x * size.y);
 }

@@ -6,6 +6,7 @@
 mod attempt;
 mod linked;
 mod lists;
+mod local;
 mod room;
 mod timed;
 
@@ -20,7 +21,8 @@ use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
 use crate::raster::{Attempts, Rasterizer};
 use attempt::Tried;
-pub use linked::{CONTIGUOUS, List};
+pub use linked::{CONTIGUOUS, IN_ORDER, List};
+pub use local::{FINISHED, Local, run as run_local};
 pub use timed::{Span, Timed};
 
 /// Triangles of a tile that one dispatch draws. llvmpipe leaves every loop of an invocation after

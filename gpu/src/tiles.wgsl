@@ -3,26 +3,15 @@
 //
 // Bins and lists are counted, filled and sorted in passes of their own, and read in later ones. A
 // pixel's list is written by the one invocation that owns the pixel.
+//#import entry
 //#import bin
 //#import scan
 //#import sort
 //#import jagged
-//#import shown
+//#import shade
 //#import network
 
-// A fragment in a list: depth key and triangle. Nearest first, ties by triangle.
-alias Listed = vec2<u32>;
-
-const LAST: Listed = vec2(0xffffffffu, 0xffffffffu);
-
-fn less(a: Listed, b: Listed) -> bool {
-    return a.x < b.x || (a.x == b.x && a.y < b.y);
-}
-
-@group(0) @binding(10) var<storage, read_write> picture: array<vec4<f32>>;
 @group(0) @binding(12) var<storage, read_write> unfinished: atomic<u32>;
-@group(0) @binding(21) var<storage, read_write> opaque_key: array<u32>;
-@group(0) @binding(22) var<storage, read_write> opaque_prim: array<u32>;
 
 // Stage bin: one triangle.
 @compute @workgroup_size(WORKGROUP)
@@ -57,6 +46,19 @@ fn bin_fill_large(
     @builtin(local_invocation_index) lane: u32,
 ) {
     bin_large(chunk_of(group, groups), lane, true);
+}
+
+// The triangles of a tile, from front to back.
+@compute @workgroup_size(WORKGROUP)
+fn bin_sort(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let tile = chunk_of(group, groups);
+    if tile < tiled.items {
+        sort_bin(tile, lane);
+    }
 }
 
 // Of bins or of lists: entries of each part of them.
@@ -101,8 +103,8 @@ fn jagged_count(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if tile < tiled.items {
-        draw(tile, lane, false);
+    if is_left(tile) {
+        count_lists(tile, lane);
     }
 }
 
@@ -114,7 +116,7 @@ fn jagged_place(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if tile < tiled.items {
+    if is_left(tile) {
         place_lists(tile, lane);
     }
 }
@@ -127,8 +129,8 @@ fn jagged_fill(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if tile < tiled.items {
-        draw(tile, lane, true);
+    if is_left(tile) {
+        fill_lists(tile, lane);
     }
 }
 
@@ -140,7 +142,7 @@ fn shade_sort(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if tile >= tiled.items {
+    if !is_left(tile) {
         return;
     }
     let run = run_at(tile, lane);
@@ -170,6 +172,19 @@ fn shade_merge(
     let entry = long_entry(chunk_of(group, groups), lane);
     if entry.at < entry.end {
         merge_runs(entry.at, entry.start, entry.end, tiled.run);
+    }
+}
+
+// Lists in rows that were filled in order.
+@compute @workgroup_size(WORKGROUP)
+fn shade_ordered(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let own = pixel_at(chunk_of(group, groups), lane);
+    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.in_order {
+        shown(own.pixel, shaded(own));
     }
 }
 

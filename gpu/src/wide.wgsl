@@ -58,6 +58,13 @@ fn wide_scale(a: Wide, b: u32) -> Wide {
     return vec2(product.x, product.y + a.y * b);
 }
 
+// The same for a signed word.
+fn wide_times(a: Wide, b: i32) -> Wide {
+    let product = wide_scale(a, bitcast<u32>(b));
+    // A negative factor was read 2^32 too large.
+    return vec2(product.x, product.y - select(0u, a.x, b < 0));
+}
+
 // a * 2^bits, bits in 1..31.
 fn wide_shift(a: Wide, bits: u32) -> Wide {
     return vec2(a.x << bits, (a.y << bits) | (a.x >> (32u - bits)));
@@ -79,4 +86,12 @@ fn wide_low24(a: Wide) -> i32 {
 // Not negative; relative error at most 2 units (a conversion and a sum).
 fn wide_to_f32(a: Wide) -> f32 {
     return f32(a.y) * 4294967296.0 + f32(a.x);
+}
+
+// Of either sign; the same error.
+fn wide_signed_to_f32(a: Wide) -> f32 {
+    if wide_negative(a) {
+        return -wide_to_f32(wide_sub(wide(0), a));
+    }
+    return wide_to_f32(a);
 }

@@ -41,6 +41,11 @@ fn wide_scale(a: Wide, b: u32) -> Wide {
     return a * i64(b);
 }
 
+// The same for a signed word.
+fn wide_times(a: Wide, b: i32) -> Wide {
+    return a * i64(b);
+}
+
 // a * 2^bits, bits in 1..31.
 fn wide_shift(a: Wide, bits: u32) -> Wide {
     return a << bits;
@@ -58,5 +63,10 @@ fn wide_low24(a: Wide) -> i32 {
 
 // Not negative; relative error at most 2 units.
 fn wide_to_f32(a: Wide) -> f32 {
+    return f32(a);
+}
+
+// Of either sign; the same error.
+fn wide_signed_to_f32(a: Wide) -> f32 {
     return f32(a);
 }

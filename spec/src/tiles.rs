@@ -8,6 +8,8 @@
 //!
 //! Everything here is exact. Twin: `gpu/src/tiles.wgsl`.
 
+mod local;
+
 use std::ops::Range;
 
 use crate::abuffer::{Opaque, Sorted, resolve};
@@ -15,6 +17,8 @@ use crate::bound::Bounded;
 use crate::raster::{Fragment, Setup, sample};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
+
+pub use local::{Digest, digest, local};
 
 /// Pixels along a side of a tile.
 pub const SIDE: u32 = 8;

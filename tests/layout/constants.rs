@@ -7,7 +7,7 @@ use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
-use triptych_gpu::tiles::CONTIGUOUS;
+use triptych_gpu::tiles::{CONTIGUOUS, FINISHED, IN_ORDER};
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
@@ -58,6 +58,8 @@ fn constants_are_those_of_rust() {
         ("SIDE", i64::from(SIDE)),
         ("ROWS", i64::from(ROWS)),
         ("CONTIGUOUS", i64::from(CONTIGUOUS)),
+        ("IN_ORDER", i64::from(IN_ORDER)),
+        ("FINISHED", i64::from(FINISHED)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

@@ -111,6 +111,7 @@ fn what_is_told_of_maps_is_that_of_rust() {
     everywhere("Tiled", &tiled, layout);
     let list = layout_of!(List: start length filled);
     everywhere("List", &list, layout);
+    everywhere("Digest", &words(&["count", "words"]), layout);
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod tiles;
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 36] = [
+pub const STAGES: [Stage; 37] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -85,6 +85,7 @@ pub const STAGES: [Stage; 36] = [
     tiles::BIN,
     tiles::JAGGED,
     tiles::SHADE,
+    tiles::LOCAL,
     Stage {
         name: "count",
         file: "grid",

@@ -20,9 +20,9 @@ use crate::raster::{Rasterizer, SATURATED};
 pub(super) const BINNED_MAX: u32 = SATURATED / 64;
 
 /// What came of an attempt.
-pub(super) enum Tried {
+pub(super) enum Tried<T = Drawn> {
     /// Everything fitted.
-    Done(Box<Drawn>),
+    Done(Box<T>),
     /// There is not enough room: so many fragments are to be stored.
     Needs(u32),
 }
@@ -35,21 +35,30 @@ pub(super) fn run(
     capacity: u32,
 ) -> Result<Tried, GpuError> {
     let mut room = room(rasterizer, options, band)?;
-    let (bins, mut bin) = count_bins(&room)?;
-    let drawn = (longest(&bins), options.drawn.clamp(1, DRAWN));
-    let binned = bins.last().copied().unwrap_or(0);
-    if binned > BINNED_MAX || 4 * u64::from(binned) > rasterizer.gpu.binding_limit() {
-        // More fragments than any counter takes, for all that is known.
+    let Some((bins, bin)) = bins(&mut room)? else {
         return Ok(Tried::Needs(SATURATED));
-    }
-    bin += fill_bins(&mut room, binned)?;
+    };
+    let binned = bins.last().copied().unwrap_or(0);
     let prims = rasterizer.gpu.read(room.get("binned"), binned as usize)?;
+    let drawn = (longest(&bins), options.drawn.clamp(1, DRAWN));
     let mut tried = jagged(&mut room, band, capacity, drawn)?;
     if let Tried::Done(drawn) = &mut tried {
         drawn.times.bin = bin;
         drawn.bins.push((band, bins, prims));
     }
     Ok(tried)
+}
+
+/// Puts the triangles of a band in bins: where each begins. `None` if they may have more fragments than
+/// any counter takes, for all that is known.
+pub(super) fn bins(room: &mut Room<'_, '_>) -> Result<Option<(Vec<u32>, Duration)>, GpuError> {
+    let (bins, time) = count_bins(room)?;
+    let binned = bins.last().copied().unwrap_or(0);
+    if binned > BINNED_MAX || 4 * u64::from(binned) > room.rasterizer.gpu.binding_limit() {
+        return Ok(None);
+    }
+    let filled = fill_bins(room, binned)?;
+    Ok(Some((bins, time + filled)))
 }
 
 /// A band's buffers, with its opaque surfaces.
@@ -89,7 +98,7 @@ pub(super) fn fill_bins(room: &mut Room<'_, '_>, binned: u32) -> Result<Duration
 }
 
 /// Stages jagged and shade.
-fn jagged(
+pub(super) fn jagged(
     room: &mut Room<'_, '_>,
     band: Band,
     capacity: u32,
@@ -103,13 +112,13 @@ fn jagged(
     if needed > capacity {
         return Ok(Tried::Needs(needed));
     }
-    let longest = room.longest(needed)?;
     let entries = || gpu.storage("entries of lists", 8 * u64::from(needed));
     room.set("listed", entries()?);
-    if longest.length > ROWS {
+    if room.longest(needed)?.length > ROWS {
         room.set("merged", entries()?);
     }
     times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
+    let longest = room.longest(needed)?;
     let lists: Vec<linked::List> = gpu.read(room.get("lists"), room.lists as usize)?;
     let rows: Vec<u32> = gpu.read(room.get("rows"), room.lists as usize)?;
     let linked = |room: &Room<'_, '_>| -> Result<Lists, GpuError> {

@@ -15,12 +15,15 @@ pub struct List {
     pub start: u32,
     /// Entries.
     pub length: u32,
-    /// How far it is filled, where that takes several dispatches.
+    /// How far it is filled, and [`IN_ORDER`].
     pub filled: u32,
 }
 
 /// Marks a list whose entries lie one after another. Twin: `CONTIGUOUS` in `jagged.wgsl`.
 pub const CONTIGUOUS: u32 = 0x8000_0000;
+
+/// Marks a list whose entries came in order. Twin: `IN_ORDER` in `jagged.wgsl`.
+pub const IN_ORDER: u32 = 0x8000_0000;
 
 /// Jagged diagonals as lists, each entry linked to the next one of its list. Where a list leads
 /// astray, the links do: whoever follows them must find out.

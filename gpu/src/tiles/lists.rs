@@ -12,8 +12,15 @@ use crate::lists::long_passes;
 /// Steps along lists that a dispatch takes.
 pub(super) const STEPS: u32 = 16_384;
 
-/// Kernels that blend short lists, by the sizes of [`crate::wgsl::network::SIZES`].
-const ENTRIES: [&str; 4] = ["shade_8", "shade_16", "shade_32", "shade_64"];
+/// Kernels that blend lists in rows, by the bits of [`Longest::kernels`]: lists to be sorted, by the
+/// sizes of [`crate::wgsl::network::SIZES`], and lists in order.
+const ENTRIES: [(u32, &str); 5] = [
+    (0, "shade_8"),
+    (1, "shade_16"),
+    (2, "shade_32"),
+    (3, "shade_64"),
+    (5, "shade_ordered"),
+];
 
 impl Room<'_, '_> {
     /// Counts the fragments of each list, and says where they will be.
@@ -25,7 +32,7 @@ impl Room<'_, '_> {
         Ok(passes)
     }
 
-    fn of_tiles(&self) -> Tiled {
+    pub(super) fn of_tiles(&self) -> Tiled {
         Tiled {
             items: self.tiles,
             ..Tiled::default()
@@ -80,8 +87,8 @@ impl Room<'_, '_> {
             stored: stored.into(),
             ..self.of_tiles()
         };
-        for (at, entry) in ENTRIES.into_iter().enumerate() {
-            if longest.kernels >> at & 1 == 1 {
+        for (bit, entry) in ENTRIES {
+            if longest.kernels >> bit & 1 == 1 {
                 passes.push(self.pass(entry, short, self.tiles)?);
             }
         }

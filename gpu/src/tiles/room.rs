@@ -154,7 +154,8 @@ impl<'r, 'g> Room<'r, 'g> {
             ("faces", &self.rasterizer.faces),
         ]);
         all.extend(self.buffers.iter().map(|(name, buffer)| (*name, buffer)));
-        Ready::new(gpu, kernels, ("tiles", entry), groups, &all)
+        let file = if entry == "local" { "local" } else { "tiles" };
+        Ready::new(gpu, kernels, (file, entry), groups, &all)
     }
 
     /// Counts the triangles of each tile, and where its bin begins.
@@ -171,13 +172,14 @@ impl<'r, 'g> Room<'r, 'g> {
         Ok(passes)
     }
 
-    /// Fills the bins, which have room for so many triangles.
+    /// Fills the bins, which have room for so many triangles, and puts them in order.
     pub(super) fn fill_bins(&self, binned: u32) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(binned);
         let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
         Ok(vec![
             self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
             self.pass_with("bin_fill_large", tiled, tiled.groups, &others)?,
+            self.pass("bin_sort", self.of_tiles(), self.tiles)?,
         ])
     }
 
@@ -218,11 +220,10 @@ impl<'r, 'g> Room<'r, 'g> {
     ) -> Result<Vec<Ready>, GpuError> {
         let pass = |first| {
             let tiled = Tiled {
-                items: self.tiles,
                 capacity,
                 first,
                 count: drawn,
-                ..Tiled::default()
+                ..self.of_tiles()
             };
             self.pass(entry, tiled, self.tiles)
         };

@@ -24,6 +24,8 @@ pub enum Span {
     Sort,
     /// The picture of so many nearest layers; short lists are sorted for it.
     Shade(u32),
+    /// The picture of so many nearest layers of the tiles that need no lists in memory.
+    Local(u32),
 }
 
 /// A whole target that is set up.
@@ -34,6 +36,8 @@ pub struct Timed<'r, 'g> {
     pub binned: u32,
     /// Fragments in lists.
     pub fragments: u32,
+    /// Tiles that [`Self::local`] left to lists.
+    pub left: u32,
 }
 
 impl<'r, 'g> Timed<'r, 'g> {
@@ -46,47 +50,104 @@ impl<'r, 'g> Timed<'r, 'g> {
         options: &Options<'_>,
         layers: &[u32],
     ) -> Result<Self, GpuError> {
-        let gpu = rasterizer.gpu;
+        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        timed.lists(drawn, layers)?;
+        Ok(timed)
+    }
+
+    /// The same with lists in memory for those tiles alone that need them.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn local(
+        rasterizer: &'r Rasterizer<'g>,
+        options: &Options<'_>,
+        layers: &[u32],
+    ) -> Result<Self, GpuError> {
+        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        timed.room.with_digests()?;
+        let mut locals = Vec::new();
+        for n in layers {
+            let pass = timed.room.local(drawn.1, *n)?;
+            locals.push((Span::Local(*n), vec![pass]));
+        }
+        if let Some((_, passes)) = locals.first() {
+            attempt::submit(&timed.room, passes)?;
+        }
+        timed.left = rasterizer.gpu.word(timed.room.get("digests"), 0)?;
+        if timed.left == 0 {
+            timed.spans.extend(locals);
+            return Ok(timed);
+        }
+        timed.lists(drawn, layers)?;
+        // A picture of some layers is that of all tiles.
+        let shades = timed.spans.len() - layers.len();
+        let shades = timed.spans.split_off(shades);
+        let lists = timed.spans.split_off(1);
+        let mut lists = lists.into_iter();
+        for (local, shade) in locals.into_iter().zip(shades) {
+            timed.spans.push(local);
+            timed.spans.extend(lists.by_ref());
+            timed.spans.push(shade);
+        }
+        Ok(timed)
+    }
+
+    /// A target with triangles in bins; the longest bin, and how many of it a dispatch draws.
+    fn bins(
+        rasterizer: &'r Rasterizer<'g>,
+        options: &Options<'_>,
+    ) -> Result<(Self, (u32, u32)), GpuError> {
         let mut room = attempt::room(rasterizer, options, Band::whole(rasterizer.size))?;
         let (bins, _) = attempt::count_bins(&room)?;
         let binned = bins.last().copied().unwrap_or(0);
         if binned > BINNED_MAX {
             return Err(GpuError::Limit {
-                adapter: gpu.name.clone(),
+                adapter: rasterizer.gpu.name.clone(),
                 what: "triangles in tiles",
                 needed: binned.into(),
                 limit: BINNED_MAX.into(),
             });
         }
         attempt::fill_bins(&mut room, binned)?;
-        let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
-        attempt::submit(&room, &room.place_lists(drawn)?)?;
-        let fragments = gpu.word(room.get("counter"), 0)?;
-        let longest = room.longest(fragments)?;
-        let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
-        room.set("listed", entries()?);
-        if longest.length > ROWS {
-            room.set("merged", entries()?);
-        }
         let mut bin = room.count_bins()?;
         bin.extend(room.fill_bins(binned)?);
-        let mut spans = vec![
-            (Span::Bin, bin),
-            (Span::Place, room.place_lists(drawn)?),
-            (Span::Fill, room.drawn("jagged_fill", fragments, drawn)?),
-        ];
+        let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
+        let timed = Self {
+            room,
+            spans: vec![(Span::Bin, bin)],
+            binned,
+            fragments: 0,
+            left: 0,
+        };
+        Ok((timed, drawn))
+    }
+
+    /// Lists, and pictures of them.
+    fn lists(&mut self, drawn: (u32, u32), layers: &[u32]) -> Result<(), GpuError> {
+        let room = &mut self.room;
+        let gpu = room.rasterizer.gpu;
+        let place = room.place_lists(drawn)?;
+        attempt::submit(room, &place)?;
+        let fragments = gpu.word(room.get("counter"), 0)?;
+        let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
+        room.set("listed", entries()?);
+        if room.longest(fragments)?.length > ROWS {
+            room.set("merged", entries()?);
+        }
+        let fill = room.drawn("jagged_fill", fragments, drawn)?;
+        attempt::submit(room, &fill)?;
+        let longest = room.longest(fragments)?;
+        let spans = &mut self.spans;
+        spans.extend([(Span::Place, place), (Span::Fill, fill)]);
         if longest.length > ROWS {
             spans.push((Span::Sort, room.sort_lists(longest)?));
         }
         for n in layers {
             spans.push((Span::Shade(*n), room.shade(longest, *n, false)?));
         }
-        Ok(Self {
-            room,
-            spans,
-            binned,
-            fragments,
-        })
+        self.fragments = fragments;
+        Ok(())
     }
 
     /// Bytes of all buffers, but for the triangles.
@@ -106,8 +167,12 @@ impl<'r, 'g> Timed<'r, 'g> {
     pub fn pictures(&self, mut show: impl FnMut(u32, Vec<[f32; 3]>)) -> Result<(), GpuError> {
         for (span, passes) in &self.spans {
             attempt::submit(&self.room, passes)?;
-            if let Span::Shade(layers) = span {
-                show(*layers, attempt::picture(&self.room)?);
+            match span {
+                Span::Local(layers) if self.left == 0 => {
+                    show(*layers, attempt::picture(&self.room)?)
+                }
+                Span::Shade(layers) => show(*layers, attempt::picture(&self.room)?),
+                _ => {}
             }
         }
         Ok(())

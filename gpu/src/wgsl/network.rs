@@ -40,7 +40,7 @@ fn shade_{size}(
 ) {{
     let own = pixel_at(chunk_of(group, groups), lane);
     let in_rows = own.pixel != NOWHERE && own.run.row != CONTIGUOUS;
-    if in_rows && own.run.length <= {size}u{more} {{
+    if in_rows && !own.run.in_order && own.run.length <= {size}u{more} {{
         shown(own.pixel, shaded_{size}(own.run, own.end));
     }}
 }}

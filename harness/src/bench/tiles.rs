@@ -136,6 +136,6 @@ fn name(span: Span) -> &'static str {
         Span::Place => "place",
         Span::Fill => "fill",
         Span::Sort => "sort",
-        Span::Shade(_) => "blend",
+        Span::Shade(_) | Span::Local(_) => "blend",
     }
 }

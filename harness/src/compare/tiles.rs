@@ -1,4 +1,4 @@
-//! Stage `bin`: the triangles of each tile, as sets, for nobody orders them.
+//! Stage `bin`: the triangles of each tile, as sets, for nobody relies on their order.
 //!
 //! A triangle that a bin lacks is a `lost-node`, one that it holds too often a `duplicate`, and one
 //! that does not belong there `coverage`. Bins that do not follow one another up to the end are
@@ -6,10 +6,11 @@
 
 use std::ops::Range;
 
-use triptych_spec::tiles::Bins;
+use triptych_spec::tiles::{Bins, Digest};
 
 use crate::cause::Cause;
 use crate::compare::Judgement;
+use crate::compare::fragments::at;
 use crate::row::Class;
 
 /// Compares the bins of the same rows: where each begins, and triangles.
@@ -57,9 +58,56 @@ fn bin(tile: usize, must: &[u32], seen: &[u32], judgement: &mut Judgement) {
     }
 }
 
+/// Stage `local`: what is left of lists that were blended at once. One of another length is `coverage`;
+/// one of the same length has another key, triangle or order: `sort-order`.
+pub fn digests(spec: &[Digest], other: &[Digest], width: u32) -> Judgement {
+    let mut judgement = Judgement::new(Class::Exact, "digests of lists");
+    if spec.len() != other.len() {
+        judgement.differs(Cause::ReferenceMissing, None, || {
+            format!("{} lists, must be {}", other.len(), spec.len())
+        });
+        return judgement;
+    }
+    for (pixel, (must, seen)) in (0_u32..).zip(spec.iter().zip(other)) {
+        judgement.compared += 1;
+        if must == seen {
+            continue;
+        }
+        let cause = match must.count == seen.count {
+            true => Cause::SortOrder,
+            false => Cause::Coverage,
+        };
+        judgement.differs(cause, Some(pixel), || {
+            let [own, spec] = [seen, must].map(|d| format!("{} ({:08x})", d.count, d.words));
+            format!("{} has {own} fragments, must have {spec}", at(pixel, width))
+        });
+    }
+    judgement
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digests_tell_what_differs() {
+        let list = [[5, 1], [9, 0]];
+        let of = |list: &[[u32; 2]]| triptych_spec::tiles::digest(list.iter().copied());
+        let judged = |seen: &[[u32; 2]]| {
+            let judgement = digests(&[of(&list)], &[of(seen)], 1);
+            assert_eq!(judgement.compared, 1);
+            judgement.causes.into_keys().collect::<Vec<_>>()
+        };
+        assert_eq!(judged(&list), []);
+        assert_eq!(judged(&[[5, 1]]), [Cause::Coverage]);
+        assert_eq!(judged(&[[9, 0], [5, 1]]), [Cause::SortOrder]);
+        assert_eq!(judged(&[[5, 1], [8, 0]]), [Cause::SortOrder]);
+        let none = digests(&[of(&list)], &[], 1);
+        assert_eq!(
+            none.causes.into_keys().collect::<Vec<_>>(),
+            [Cause::ReferenceMissing]
+        );
+    }
 
     fn spec() -> Bins {
         Bins {

@@ -103,7 +103,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "tiles",
-        files: &[],
+        files: &["local"],
         chain: Chain::Frame,
         stages: &[
             in_tiles(
@@ -116,6 +116,7 @@ pub const FAMILIES: &[Family] = &[
                     "bin_offsets",
                     "bin_fill",
                     "bin_fill_large",
+                    "bin_sort",
                 ],
             ),
             in_tiles("jagged", &["jagged_count", "jagged_place", "jagged_fill"]),
@@ -125,6 +126,7 @@ pub const FAMILIES: &[Family] = &[
                     "shade_sort",
                     "shade_runs",
                     "shade_merge",
+                    "shade_ordered",
                     "shade_8",
                     "shade_16",
                     "shade_32",
@@ -132,6 +134,7 @@ pub const FAMILIES: &[Family] = &[
                     "shade_long",
                 ],
             ),
+            in_tiles("local", &["local"]),
         ],
         no_corpus: Some("every scene of a frame goes through it"),
     },

@@ -3,7 +3,7 @@
 use triptych_gpu::abuffer::BandResult;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_gpu::tiles::{self, Drawn};
+use triptych_gpu::tiles::{self, Drawn, Local};
 use triptych_spec::abuffer::Sorted;
 use triptych_spec::raster::Fragment;
 use triptych_spec::tiles::bin;
@@ -21,10 +21,11 @@ use crate::row::Class;
 const WORK_MAX: u64 = 1 << 18;
 
 /// The stages, and how each is compared.
-const STAGES: [(&str, Class); 3] = [
+const STAGES: [(&str, Class); 4] = [
     ("bin", Class::Exact),
     ("jagged", Class::Structure),
     ("shade", Class::Interval),
+    ("local", Class::Interval),
 ];
 
 /// Adds rows for the stages, which start from the spec's triangles and opaque surfaces. They have no twin
@@ -75,6 +76,7 @@ impl GpuLeg<'_> {
             drawn: tiles::DRAWN,
         };
         let drawn = tiles::run(rasterizer, options)?;
+        let local = tiles::run_local(rasterizer, options)?;
         let seen = Observed::<observe::Gpu, _>::new(self.label(), drawn);
         let skip = |stage, class, reason: &str, rows: &mut Rows| {
             rows.skip(stage, &self.spec.label, &self.label(), class, reason.into());
@@ -87,8 +89,14 @@ impl GpuLeg<'_> {
             because = Some("the lists differ, see jagged");
         }
         match because {
-            Some(reason) => skip("shade", Class::Interval, reason, rows),
-            None => self.judge_shade(&seen, rows),
+            Some(reason) => {
+                skip("shade", Class::Interval, reason, rows);
+                skip("local", Class::Interval, reason, rows);
+            }
+            None => {
+                self.judge_shade(&seen, rows);
+                self.judge_local(local, rows);
+            }
         }
         Ok(())
     }
@@ -143,6 +151,24 @@ impl GpuLeg<'_> {
             Judgement::sum([picture].into_iter().chain(ordered))
         });
         rows.add("shade", &spec, &gpu, judgement);
+    }
+}
+
+impl GpuLeg<'_> {
+    /// The picture without lists in memory, and what is left of them.
+    fn judge_local(&self, local: Local, rows: &mut Rows) {
+        let spec = self.spec.derive(&self.spec.value);
+        let gpu = Observed::<observe::Gpu, _>::new(self.label(), local);
+        let gpu = gpu.map(|s| s).taking(gpu.value.time);
+        let width = self.scene.size.width;
+        let judgement = compare(&spec, &gpu, |spec, local| {
+            let must = triptych_spec::tiles::local(&spec.sorted);
+            Judgement::sum([
+                compare::image::compare(&spec.image, &local.image, width),
+                compare::tiles::digests(&must, &local.digests, width),
+            ])
+        });
+        rows.add("local", &spec, &gpu, judgement);
     }
 }
 

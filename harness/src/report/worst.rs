@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 42] = [
+const ORDER: [&str; 43] = [
     "leg",
     "all",
     "expect",
@@ -32,6 +32,7 @@ const ORDER: [&str; 42] = [
     "bin",
     "jagged",
     "shade",
+    "local",
     "count",
     "scan",
     "fill",

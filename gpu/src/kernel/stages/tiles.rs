@@ -14,11 +14,13 @@ pub(super) const BIN: Stage = Stage {
         "bin_offsets",
         "bin_fill",
         "bin_fill_large",
+        "bin_sort",
     ],
     fragment: &[],
     contract: "Counts the triangles of each tile of 8 x 8 pixels, adds the counts up to offsets, \
         and fills `binned`: those of tiled.items triangles whose faces are transparent. What is in many \
-        tiles goes to `larges` in the first pass, and is shared by workgroups in the second.",
+        tiles goes to `larges` in the first pass, and is shared by workgroups in the second. The last \
+        pass puts bins of at most 512 in order, nearest first at about the tile's middle.",
 };
 
 /// Lists of a tile, side by side.
@@ -29,7 +31,8 @@ pub(super) const JAGGED: Stage = Stage {
     fragment: &[],
     contract: "A workgroup for each tile of tiled.items: counts the fragments of each pixel from \
         the triangles tiled.first of its bin on, tiled.count of them; places the lists as jagged \
-        diagonals; fills them with key and triangle. Lists of more than 64 lie one after another.",
+        diagonals; fills them with key and triangle, and marks those that came in order. Lists of more \
+        than 64 lie one after another.",
 };
 
 /// Lists in order, and blended.
@@ -40,6 +43,7 @@ pub(super) const SHADE: Stage = Stage {
         "shade_sort",
         "shade_runs",
         "shade_merge",
+        "shade_ordered",
         "shade_8",
         "shade_16",
         "shade_32",
@@ -48,6 +52,18 @@ pub(super) const SHADE: Stage = Stage {
     ],
     fragment: &[],
     contract: "Puts lists of more than 64 entries in order, in several passes; those of at most \
-        8, 16, 32 and 64 in registers, from where they are written back if tiled.stored says so. \
-        Blends both into `picture`, in front of the opaque key only.",
+        8, 16, 32 and 64 that are not marked in registers, from where they are written back if \
+        tiled.stored says so. Blends all into `picture`, in front of the opaque key only.",
+};
+
+/// The picture without lists in memory.
+pub(super) const LOCAL: Stage = Stage {
+    name: "local",
+    file: "local",
+    compute: &["local"],
+    fragment: &[],
+    contract: "A workgroup for each tile of tiled.items, of which it draws the whole bin, of at most \
+        tiled.count triangles: blends the fragments of each pixel into `picture`, nearest first, and \
+        writes how many they are and their digest to `digests`. A tile of which it cannot is left \
+        as it is, and digests.left counts it; of others the highest bit of bins[tile] is set.",
 };

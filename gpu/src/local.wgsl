@@ -1,0 +1,215 @@
+// A-buffer whose lists never reach memory. A tile's triangles come from front to back, about; an
+// invocation keeps the last eight fragments of its pixel in order, in registers, and blends the nearest
+// of them whenever another one comes. If one comes that belongs in front of what was blended, the tile
+// is left to lists in memory. So the picture is exact, and most tiles take no room.
+// Twin: spec/src/tiles.rs.
+//#import entry
+//#import draw
+//#import shown
+
+// Fragments that wait.
+const WINDOW: u32 = 8u;
+
+// Of a pixel: fragments that were blended or are waiting, and a digest of them in order.
+struct Digest {
+    count: u32,
+    words: u32,
+}
+
+struct Digests {
+    // Tiles that are not finished.
+    left: atomic<u32>,
+    pixels: array<Digest>,
+}
+
+@group(0) @binding(33) var<storage, read_write> digests: Digests;
+
+struct Held {
+    // What waits, nearest first; at first, nothing that can be blended.
+    a: Listed,
+    b: Listed,
+    c: Listed,
+    d: Listed,
+    e: Listed,
+    f: Listed,
+    g: Listed,
+    h: Listed,
+    // The last that was blended, and how many were.
+    last: Listed,
+    blended: u32,
+    words: u32,
+    // From here on fragments are hidden.
+    end: u32,
+    seen: vec4<f32>,
+    is_out_of_order: bool,
+}
+
+// Fragments of small triangles, in a list for each pixel: at most SPOT of each of a batch.
+struct Small {
+    entry: Listed,
+    next: u32,
+}
+
+const SMALLS: u32 = 512u;
+const_assert SMALLS == u32(SPOT) * WORKGROUP;
+
+var<workgroup> smalls: array<Small, SMALLS>;
+var<workgroup> all_smalls: atomic<u32>;
+var<workgroup> first_small: array<atomic<u32>, WORKGROUP>;
+var<workgroup> left_over: atomic<u32>;
+
+fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
+    (*own).held.seen = vec4(0.0, 0.0, 0.0, 1.0);
+    if (*own).end != 0u {
+        (*own).held.end = opaque_key[pixel_of((*own).tile, (*own).lane)];
+    }
+    atomicStore(&first_small[(*own).lane], NOTHING);
+    if (*own).lane == 0u {
+        atomicStore(&all_smalls, 0u);
+        atomicStore(&left_over, 0u);
+    }
+}
+
+fn put_small(tile: u32, pixel: u32, entry: Listed, fill: bool) {
+    let at = atomicAdd(&all_smalls, 1u);
+    smalls[at] = Small(entry, atomicExchange(&first_small[pixel], at));
+}
+
+fn take_small(own: ptr<function, Pixel>) {
+    var at = atomicLoad(&first_small[(*own).lane]);
+    while at != NOTHING {
+        let small = smalls[at];
+        put(own, small.entry, true);
+        at = small.next;
+    }
+    atomicStore(&first_small[(*own).lane], NOTHING);
+    if (*own).lane == 0u {
+        atomicStore(&all_smalls, 0u);
+    }
+}
+
+fn leave_pixel(own: Pixel) {
+}
+
+struct Pair {
+    nearer: Listed,
+    farther: Listed,
+}
+
+fn pair(a: Listed, b: Listed) -> Pair {
+    let rises = less(a, b);
+    return Pair(select(b, a, rises), select(a, b, rises));
+}
+
+// One that lies behind all that wait, as most do.
+fn put_last(own: ptr<function, Pixel>, entry: Listed) {
+    let p = (*own).held;
+    (*own).held.a = p.b;
+    (*own).held.b = p.c;
+    (*own).held.c = p.d;
+    (*own).held.d = p.e;
+    (*own).held.e = p.f;
+    (*own).held.f = p.g;
+    (*own).held.g = p.h;
+    (*own).held.h = entry;
+    if (*own).count >= WINDOW {
+        blend(own, p.a);
+    }
+    (*own).count += 1u;
+}
+
+fn put(own: ptr<function, Pixel>, entry: Listed, fill: bool) {
+    let p = (*own).held;
+    if less(p.h, entry) {
+        put_last(own, entry);
+        return;
+    }
+    // It goes to its place from the far end; the nearest of nine comes out.
+    let h = pair(p.h, entry);
+    let g = pair(p.g, h.nearer);
+    let f = pair(p.f, g.nearer);
+    let e = pair(p.e, f.nearer);
+    let d = pair(p.d, e.nearer);
+    let c = pair(p.c, d.nearer);
+    let b = pair(p.b, c.nearer);
+    let a = pair(p.a, b.nearer);
+    (*own).held.a = a.farther;
+    (*own).held.b = b.farther;
+    (*own).held.c = c.farther;
+    (*own).held.d = d.farther;
+    (*own).held.e = e.farther;
+    (*own).held.f = f.farther;
+    (*own).held.g = g.farther;
+    (*own).held.h = h.farther;
+    if (*own).count >= WINDOW {
+        blend(own, a.nearer);
+    }
+    (*own).count += 1u;
+}
+
+fn blend(own: ptr<function, Pixel>, entry: Listed) {
+    (*own).held.is_out_of_order = (*own).held.is_out_of_order || less(entry, (*own).held.last);
+    (*own).held.last = entry;
+    (*own).held.words = digested((*own).held.words, entry);
+    if entry.x < (*own).held.end && (*own).held.blended < tiled.layers {
+        (*own).held.seen = over((*own).held.seen, entry.y);
+    }
+    (*own).held.blended += 1u;
+}
+
+// FNV-1a (Fowler, Noll and Vo), by words.
+fn digested(words: u32, entry: Listed) -> u32 {
+    return (((words ^ entry.x) * 16777619u) ^ entry.y) * 16777619u;
+}
+
+// The window's number i of the last `count` fragments, if it waits.
+fn finish(own: ptr<function, Pixel>, i: u32, entry: Listed) {
+    if i + min((*own).count, WINDOW) >= WINDOW {
+        blend(own, entry);
+    }
+}
+
+fn draw_local(tile: u32, lane: u32) {
+    var own = draw(tile, lane, true);
+    let p = own.held;
+    finish(&own, 0u, p.a);
+    finish(&own, 1u, p.b);
+    finish(&own, 2u, p.c);
+    finish(&own, 3u, p.d);
+    finish(&own, 4u, p.e);
+    finish(&own, 5u, p.f);
+    finish(&own, 6u, p.g);
+    finish(&own, 7u, p.h);
+    let bin = bin_of(tile);
+    let is_cut = bin.y - bin.x > tiled.count;
+    if own.held.is_out_of_order || is_cut {
+        atomicStore(&left_over, 1u);
+    }
+    workgroupBarrier();
+    let is_other = atomicLoad(&left_over) != 0u;
+    let pixel = pixel_of(tile, lane);
+    if !is_other && pixel != NOWHERE {
+        shown(pixel, own.held.seen);
+        digests.pixels[pixel] = Digest(own.count, own.held.words);
+    }
+    if lane == 0u {
+        if is_other {
+            atomicAdd(&digests.left, 1u);
+        } else {
+            bins[tile] |= FINISHED;
+        }
+    }
+}
+
+// Stage local: a tile.
+@compute @workgroup_size(WORKGROUP)
+fn local(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let tile = chunk_of(group, groups);
+    if tile < tiled.items {
+        draw_local(tile, lane);
+    }
+}
