@@ -16,7 +16,7 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 18] = [
+const ROOTS: [&str; 19] = [
     "abuffer",
     "alpha",
     "ceiling",
@@ -26,6 +26,7 @@ const ROOTS: [&str; 18] = [
     "grid",
     "hbao",
     "ldm",
+    "linked",
     "local",
     "multisample",
     "nearest",

@@ -1,6 +1,6 @@
 // The fragments of a tile's transparent triangles, in the order of its bin as far as triangles are not
-// small. What becomes of them is the importer's: it has `opaque_key`, a struct `Held` in which an
-// invocation keeps what it needs, and
+// small; in the reverse if FROM_BACK is set. What becomes of them is the importer's: it has that,
+// `opaque_key`, a struct `Held` in which an invocation keeps what it needs, and
 //   start_pixel   before the first fragment,
 //   put_small     a fragment of a small triangle, at any pixel of the tile,
 //   take_small    those of a batch of triangles, at the invocation's own pixel,
@@ -45,9 +45,11 @@ struct Pixel {
 // Draws a tile; all of a workgroup come along. Without `fill`, fragments are only counted: no key need
 // be right but where it is compared with an opaque surface's.
 fn draw(tile: u32, lane: u32, fill: bool) -> Pixel {
-    let bin = begin(tile, lane);
+    let bin = begin_tile(tile, lane);
     var own = pixel_in(tile, lane, fill);
-    for (var first = bin.x; first < bin.y; first += WORKGROUP) {
+    let batches = (max(bin.x, bin.y) - bin.x + WORKGROUP - 1u) / WORKGROUP;
+    for (var k = 0u; k < batches; k += 1u) {
+        let first = bin.x + WORKGROUP * select(k, batches - 1u - k, FROM_BACK);
         if lane == 0u {
             atomicStore(&larger[0], 0u);
             atomicStore(&larger[1], 0u);
@@ -55,12 +57,8 @@ fn draw(tile: u32, lane: u32, fill: bool) -> Pixel {
         workgroupBarrier();
         let all = draw_small(first, bin, tile, lane, fill);
         take_small(&own);
-        for (var bits = all.x; bits != 0u; bits &= bits - 1u) {
-            draw_larger(&own, firstTrailingBit(bits), fill);
-        }
-        for (var bits = all.y; bits != 0u; bits &= bits - 1u) {
-            draw_larger(&own, 32u + firstTrailingBit(bits), fill);
-        }
+        draw_some(&own, select(all.x, all.y, FROM_BACK), select(0u, 32u, FROM_BACK), fill);
+        draw_some(&own, select(all.y, all.x, FROM_BACK), select(32u, 0u, FROM_BACK), fill);
         leave_pixel(own);
     }
     if !fill && own.end != 0u {
@@ -69,8 +67,18 @@ fn draw(tile: u32, lane: u32, fill: bool) -> Pixel {
     return own;
 }
 
+// Larger triangles of a batch, a bit each, the first of them number `first`.
+fn draw_some(own: ptr<function, Pixel>, which: u32, first: u32, fill: bool) {
+    var bits = which;
+    while bits != 0u {
+        let i = select(firstTrailingBit(bits), firstLeadingBit(bits), FROM_BACK);
+        bits &= ~(1u << i);
+        draw_larger(own, first + i, fill);
+    }
+}
+
 // What a workgroup shares; a tile's triangles of this dispatch.
-fn begin(tile: u32, lane: u32) -> vec2<u32> {
+fn begin_tile(tile: u32, lane: u32) -> vec2<u32> {
     if lane == 0u {
         let all = bin_of(tile);
         let first = all.x + tiled.first;

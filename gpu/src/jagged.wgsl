@@ -61,6 +61,8 @@ fn slot(run: Run, i: u32) -> u32 {
     return run.start + rows[run.row + i];
 }
 
+const FROM_BACK: bool = false;
+
 // What an invocation keeps of its list while it is filled.
 struct Held {
     run: Run,

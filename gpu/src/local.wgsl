@@ -7,6 +7,8 @@
 //#import draw
 //#import shown
 
+const FROM_BACK: bool = false;
+
 // Fragments that wait.
 const WINDOW: u32 = 8u;
 

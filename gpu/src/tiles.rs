@@ -8,6 +8,7 @@ mod linked;
 mod lists;
 mod local;
 mod room;
+mod rows;
 mod timed;
 
 use std::time::Duration;
@@ -21,8 +22,9 @@ use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
 use crate::raster::{Attempts, Rasterizer};
 use attempt::Tried;
-pub use linked::{CONTIGUOUS, IN_ORDER, List};
+pub use linked::{Linked, Region, run as run_linked};
 pub use local::{FINISHED, Local, run as run_local};
+pub use rows::{CONTIGUOUS, IN_ORDER, List};
 pub use timed::{Span, Timed};
 
 /// Triangles of a tile that one dispatch draws. llvmpipe leaves every loop of an invocation after

@@ -137,7 +137,7 @@ fn by_tiles(transparent: usize, samples: u32, skip: bool) -> impl Iterator<Item 
         (_, 0, false) => format!("not needed ({none}), but nothing is skipped"),
         _ => format!("{transparent} transparent triangles"),
     };
-    ["bin", "jagged", "shade", "local"]
+    ["bin", "jagged", "shade", "local", "linked"]
         .into_iter()
         .map(move |name| Pass {
             name,

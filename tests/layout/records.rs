@@ -8,7 +8,7 @@ use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
 use triptych_gpu::ldm::Told;
 use triptych_gpu::rsm::{Parameters, View};
-use triptych_gpu::tiles::{List, Tiled};
+use triptych_gpu::tiles::{List, Region, Tiled};
 
 use super::everywhere;
 
@@ -111,6 +111,8 @@ fn what_is_told_of_maps_is_that_of_rust() {
     everywhere("Tiled", &tiled, layout);
     let list = layout_of!(List: start length filled);
     everywhere("List", &list, layout);
+    let region = layout_of!(Region: first capacity attempts unused in_order);
+    everywhere("Region", &region, layout);
     everywhere("Digest", &words(&["count", "words"]), layout);
 }
 

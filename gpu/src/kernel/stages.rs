@@ -7,7 +7,7 @@ mod tiles;
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 37] = [
+pub const STAGES: [Stage; 38] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -86,6 +86,7 @@ pub const STAGES: [Stage; 37] = [
     tiles::JAGGED,
     tiles::SHADE,
     tiles::LOCAL,
+    tiles::LINKED,
     Stage {
         name: "count",
         file: "grid",

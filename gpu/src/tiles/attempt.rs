@@ -5,8 +5,8 @@ use std::time::Duration;
 use triptych_spec::abuffer::Lists;
 use triptych_spec::tiles::ROWS;
 
-use super::linked;
 use super::room::Room;
+use super::rows;
 use super::{DRAWN, Drawn, Options, Times};
 use crate::abuffer::BandResult;
 use crate::abuffer::rivals::{Surfaces, image};
@@ -119,14 +119,14 @@ pub(super) fn jagged(
     }
     times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
     let longest = room.longest(needed)?;
-    let lists: Vec<linked::List> = gpu.read(room.get("lists"), room.lists as usize)?;
-    let rows: Vec<u32> = gpu.read(room.get("rows"), room.lists as usize)?;
+    let lists: Vec<rows::List> = gpu.read(room.get("lists"), room.lists as usize)?;
+    let moved: Vec<u32> = gpu.read(room.get("rows"), room.lists as usize)?;
     let linked = |room: &Room<'_, '_>| -> Result<Lists, GpuError> {
         let entries: Vec<[u32; 2]> = gpu.read(room.get("listed"), needed as usize)?;
         let size = (rasterizer.size.width, band);
-        Ok(linked::of_rows(
+        Ok(rows::of_rows(
             size,
-            (&lists, &rows),
+            (&lists, &moved),
             &entries,
             &rasterizer.colours,
         ))

@@ -1,81 +1,304 @@
-//! What tiles hold, as the lists that others are compared with.
+//! Stage `linked`: linked lists, a region of the nodes and a counter for each tile.
+
+use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::{EOL, Lists, Node};
-use triptych_spec::tiles::{ROWS, SIDE};
 
-use super::tiles;
-use crate::frame::{Band, WORKGROUP};
+use super::attempt::{self, Tried};
+use super::lists::STEPS;
+use super::room::Room;
+use super::{DRAWN, Options, Tiled};
+use crate::abuffer::{BandResult, PROGRESS, dispatches};
+use crate::dispatch::Ready;
+use crate::error::GpuError;
+use crate::frame::Band;
+use crate::raster::{Attempts, Need, Rasterizer, SATURATED};
 
-/// A list as kernels have it. Twin: `List` in `jagged.wgsl`.
+/// Of a pixel: opaque surface, picture, head, progress of sort and blend. Of a fragment: a node.
+const NEED: Need = Need {
+    what: "linked",
+    pixel: 2 * 4 + 16 + 4 + PROGRESS,
+    node: NODE,
+    pixels_max: u64::MAX,
+};
+
+/// Bytes of a node.
+const NODE: u64 = 16;
+
+/// A tile's nodes. Twin: `Region` in `linked.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct List {
-    /// Its first entry, and [`CONTIGUOUS`].
-    pub start: u32,
-    /// Entries.
-    pub length: u32,
-    /// How far it is filled, and [`IN_ORDER`].
-    pub filled: u32,
+pub struct Region {
+    /// The first.
+    pub first: u32,
+    /// How many there is room for.
+    pub capacity: u32,
+    /// How many there would be.
+    pub attempts: u32,
+    /// Nothing.
+    pub unused: u32,
+    /// The lists that are in order, a bit each.
+    pub in_order: [u32; 2],
 }
 
-/// Marks a list whose entries lie one after another. Twin: `CONTIGUOUS` in `jagged.wgsl`.
-pub const CONTIGUOUS: u32 = 0x8000_0000;
+/// What came out of all bands.
+#[derive(Default)]
+pub struct Linked {
+    /// Of each band, its lists as they were built, and in order.
+    pub bands: Vec<BandResult>,
+    /// The picture, row by row.
+    pub image: Vec<[f32; 3]>,
+    /// Tiles whose nodes had to be made room for again.
+    pub overflowed: u32,
+    /// Time on the device, without transfers and retries.
+    pub time: Duration,
+}
 
-/// Marks a list whose entries came in order. Twin: `IN_ORDER` in `jagged.wgsl`.
-pub const IN_ORDER: u32 = 0x8000_0000;
-
-/// Jagged diagonals as lists, each entry linked to the next one of its list. Where a list leads
-/// astray, the links do: whoever follows them must find out.
-pub(super) fn of_rows(
-    (width, band): (u32, Band),
-    (lists, rows): (&[List], &[u32]),
-    entries: &[[u32; 2]],
-    faces: &[[f32; 4]],
-) -> Lists {
-    let [across, _] = tiles(width, band);
-    let all = u32::try_from(entries.len()).expect("addresses are words");
-    let node = |&[key, prim]: &[u32; 2]| Node {
-        key,
-        next: EOL,
-        prim,
-        mask: 1,
-    };
-    let colour = |&[_, prim]: &[u32; 2]| faces.get(prim as usize).copied();
-    let mut linked = Lists {
-        heads: Vec::with_capacity((width * band.rows) as usize),
-        nodes: entries.iter().map(node).collect(),
-        colours: entries
-            .iter()
-            .map(|e| colour(e).unwrap_or([f32::NAN; 4]))
-            .collect(),
-        attempts: all,
-        capacity: all,
-    };
-    let mut left = all.saturating_add(1);
-    for (y, x) in (0..band.rows).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let tile = y / SIDE * across + x / SIDE;
-        let list = lists[(tile * WORKGROUP + y % SIDE * SIDE + x % SIDE) as usize];
-        let slot = |i: u32| match list.start & CONTIGUOUS {
-            0 => list.start.wrapping_add(rows[(tile * ROWS + i) as usize]),
-            _ => (list.start & !CONTIGUOUS).wrapping_add(i),
-        };
-        let most = match list.start & CONTIGUOUS {
-            0 => ROWS,
-            _ => all,
-        };
-        // Lists that claim more entries than there are share some, which whoever compares finds out.
-        let length = list.length.min(most).min(left);
-        left -= length;
-        let mut slots = (0..length).map(slot);
-        let mut last = slots.next().unwrap_or(EOL);
-        linked.heads.push(last);
-        for next in slots {
-            if let Some(node) = linked.nodes.get_mut(last as usize) {
-                node.next = next;
-            }
-            last = next;
+/// Draws the transparent triangles, in bands of rows. `inspect` says how long the longest list is, or `None`
+/// if lists must not be followed; then there is no picture.
+///
+/// # Errors
+/// Limits by name, WGSL errors, and whatever the device reports.
+pub fn run(
+    rasterizer: &Rasterizer<'_>,
+    options: Options<'_>,
+    inspect: impl Fn(&Lists) -> Option<u32>,
+) -> Result<Linked, GpuError> {
+    let mut result = Linked::default();
+    let mut attempts = Attempts::new(rasterizer.gpu, rasterizer.size, NEED, options.capacity);
+    while let Some((band, capacity)) = attempts.next() {
+        match of_band(rasterizer, &options, (band, capacity), &inspect) {
+            Ok(Tried::Done(part)) => result.add(*part),
+            Ok(Tried::Needs(fragments)) => attempts.overflowed(band, fragments)?,
+            Err(error) => attempts.failed(band, capacity, error)?,
         }
     }
-    linked
+    Ok(result)
+}
+
+impl Linked {
+    /// Adds a band.
+    fn add(&mut self, part: Self) {
+        self.bands.extend(part.bands);
+        self.image.extend(part.image);
+        self.overflowed += part.overflowed;
+        self.time += part.time;
+    }
+}
+
+/// Where the regions of tiles lie: one after another, with room for so many nodes each.
+fn placed(capacities: impl Iterator<Item = u32>) -> Vec<Region> {
+    let mut first = 0;
+    let region = |capacity| {
+        let region = Region {
+            first,
+            capacity,
+            ..Region::default()
+        };
+        first += capacity;
+        region
+    };
+    capacities.map(region).collect()
+}
+
+fn of_band(
+    rasterizer: &Rasterizer<'_>,
+    options: &Options<'_>,
+    (band, capacity): (Band, u32),
+    inspect: &impl Fn(&Lists) -> Option<u32>,
+) -> Result<Tried<Linked>, GpuError> {
+    let mut room = attempt::room(rasterizer, options, band)?;
+    let Some((bins, mut time)) = attempt::bins(&mut room)? else {
+        return Ok(Tried::Needs(SATURATED));
+    };
+    let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
+    let each = capacity / room.tiles;
+    let mut regions = placed((0..room.tiles).map(|_| each));
+    let mut overflowed = 0;
+    loop {
+        room.with_nodes(&regions)?;
+        time += attempt::submit(&room, &room.drawn("linked", 0, drawn)?)?;
+        let counted: Vec<Region> = rasterizer.gpu.read(room.get("regions"), regions.len())?;
+        let needed: u64 = counted.iter().map(|r| u64::from(r.attempts)).sum();
+        let full = counted.iter().zip(&regions);
+        let full = full
+            .filter(|(seen, region)| seen.attempts > region.capacity)
+            .count();
+        if full == 0 {
+            regions = counted;
+            break;
+        }
+        let needed = u32::try_from(needed).unwrap_or(SATURATED).min(SATURATED);
+        if needed > capacity || overflowed > 0 {
+            return Ok(Tried::Needs(needed));
+        }
+        // Together they fit: each tile gets what it asked for.
+        overflowed = u32::try_from(full).expect("fewer than 2^32 tiles");
+        regions = placed(counted.iter().map(|r| r.attempts));
+    }
+    let built = lists(&room, band, &regions)?;
+    let mut linked = Linked {
+        overflowed,
+        ..Linked::default()
+    };
+    let mut result = BandResult {
+        band,
+        sorted: None,
+        built,
+    };
+    if let Some(longest) = inspect(&result.built) {
+        time += until_done(&room, room.sort_linked()?, dispatches(longest))?;
+        result.sorted = Some(lists(&room, band, &regions)?);
+        for pass in room.blend_linked(longest, u32::MAX)? {
+            time += attempt::submit(&room, &[pass])?;
+        }
+        linked.image = attempt::picture(&room)?;
+    }
+    linked.bands.push(result);
+    linked.time = time;
+    Ok(Tried::Done(Box::new(linked)))
+}
+
+impl Region {
+    /// Lists that are not in order.
+    pub(super) fn unordered(&self) -> u32 {
+        self.in_order.map(u32::count_zeros).iter().sum()
+    }
+}
+
+impl Room<'_, '_> {
+    /// Links everything, in regions that hold just what is drawn: these, and the passes.
+    pub(super) fn link_exactly(
+        &mut self,
+        drawn: (u32, u32),
+    ) -> Result<(Vec<Region>, Vec<Ready>), GpuError> {
+        let gpu = self.rasterizer.gpu;
+        let mut regions = placed((0..self.tiles).map(|_| 0));
+        for _ in 0..2 {
+            self.with_nodes(&regions)?;
+            attempt::submit(self, &self.drawn("linked", 0, drawn)?)?;
+            let counted: Vec<Region> = gpu.read(self.get("regions"), regions.len())?;
+            regions = placed(counted.iter().map(|r| r.attempts));
+            regions.iter_mut().zip(&counted).for_each(|(region, seen)| {
+                region.attempts = seen.attempts;
+                region.in_order = seen.in_order;
+            });
+        }
+        let passes = self.drawn("linked", 0, drawn)?;
+        Ok((regions, passes))
+    }
+
+    /// Makes room for nodes.
+    pub(super) fn with_nodes(&mut self, regions: &[Region]) -> Result<(), GpuError> {
+        let gpu = self.rasterizer.gpu;
+        let pixels = u64::from(self.frame.width) * u64::from(self.frame.rows);
+        let nodes = regions.last().map_or(0, |last| last.first + last.capacity);
+        self.set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
+        self.set("heads", gpu.storage("heads", 4 * pixels)?);
+        self.set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
+        self.set("regions", gpu.upload("regions", regions)?);
+        Ok(())
+    }
+
+    /// Puts lists in order that are not; over and over, until none asks for more.
+    pub(super) fn sort_linked(&self) -> Result<Ready, GpuError> {
+        self.pass("linked_sort", self.of_tiles(), self.tiles)
+    }
+
+    /// The same for lists of at most `longest` nodes, as often as any may ask for.
+    pub(super) fn sort_linked_whole(&self, longest: u32) -> Result<Vec<Ready>, GpuError> {
+        let first = self
+            .sort_linked()?
+            .after_clearing(self.get("progress").clone());
+        let others = (1..dispatches(longest)).map(|_| self.sort_linked());
+        std::iter::once(Ok(first)).chain(others).collect()
+    }
+
+    /// Blends lists of at most `longest` nodes.
+    pub(super) fn blend_linked(&self, longest: u32, layers: u32) -> Result<Vec<Ready>, GpuError> {
+        let pass = |first| {
+            let tiled = Tiled {
+                first,
+                count: STEPS,
+                layers,
+                ..self.of_tiles()
+            };
+            self.pass("linked_blend", tiled, self.tiles)
+        };
+        // A list ends behind its last node.
+        (0..=longest).step_by(STEPS as usize).map(pass).collect()
+    }
+}
+
+/// Runs a pass until no pixel asks for more.
+fn until_done(room: &Room<'_, '_>, pass: Ready, most: u64) -> Result<Duration, GpuError> {
+    let gpu = room.rasterizer.gpu;
+    let progress = room.get("progress");
+    let clear = |bytes| {
+        let mut encoder = gpu.encoder();
+        encoder.clear_buffer(progress, 0, bytes);
+        gpu.submit(encoder)
+    };
+    let pass = [pass];
+    let mut time = Duration::ZERO;
+    clear(None)?;
+    for _ in 0..most {
+        clear(Some(4))?;
+        time += attempt::submit(room, &pass)?;
+        if gpu.word(progress, 0)? == 0 {
+            return Ok(time);
+        }
+    }
+    Err(GpuError::Endless {
+        adapter: gpu.name.clone(),
+        stage: "linked",
+    })
+}
+
+/// The nodes of all regions, one region after another without gaps, with links to match. What leads to a
+/// place that no counter handed out leads nowhere.
+fn lists(room: &Room<'_, '_>, band: Band, regions: &[Region]) -> Result<Lists, GpuError> {
+    let rasterizer = room.rasterizer;
+    let gpu = rasterizer.gpu;
+    let all = regions.last().map_or(0, |last| last.first + last.capacity);
+    let nodes: Vec<[u32; 4]> = gpu.read(room.get("nodes"), all as usize)?;
+    let pixels = band.pixels(rasterizer.size) as usize;
+    let heads: Vec<u32> = gpu.read(room.get("heads"), pixels)?;
+    // By address, the node's number among those that are stored.
+    let mut numbers = vec![None; nodes.len()];
+    let mut count = 0;
+    for region in regions {
+        for at in region.first..region.first + region.attempts.min(region.capacity) {
+            numbers[at as usize] = Some(count);
+            count += 1;
+        }
+    }
+    // One less than the end of a list is no address.
+    let moved = |at: u32| match numbers.get(at as usize) {
+        _ if at == EOL => EOL,
+        Some(Some(number)) => *number,
+        _ => EOL - 1,
+    };
+    let stored = numbers
+        .iter()
+        .zip(&nodes)
+        .filter(|(number, _)| number.is_some());
+    let nodes: Vec<Node> = stored
+        .map(|(_, &[key, next, prim, mask])| Node {
+            key,
+            next: moved(next),
+            prim,
+            mask,
+        })
+        .collect();
+    let face = |node: &Node| rasterizer.colours.get(node.prim as usize).copied();
+    let colours = nodes.iter().map(|node| face(node).unwrap_or([f32::NAN; 4]));
+    Ok(Lists {
+        heads: heads.into_iter().map(moved).collect(),
+        colours: colours.collect(),
+        nodes,
+        attempts: count,
+        capacity: count,
+    })
 }

@@ -154,7 +154,11 @@ impl<'r, 'g> Room<'r, 'g> {
             ("faces", &self.rasterizer.faces),
         ]);
         all.extend(self.buffers.iter().map(|(name, buffer)| (*name, buffer)));
-        let file = if entry == "local" { "local" } else { "tiles" };
+        let file = match entry {
+            "local" => "local",
+            "linked" | "linked_sort" | "linked_blend" => "linked",
+            _ => "tiles",
+        };
         Ready::new(gpu, kernels, (file, entry), groups, &all)
     }
 

@@ -4,7 +4,7 @@ use triptych_spec::tiles::ROWS;
 
 use super::attempt::BINNED_MAX;
 use super::room::Room;
-use super::{DRAWN, Options, attempt};
+use super::{DRAWN, Options, Region, attempt};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -36,7 +36,7 @@ pub struct Timed<'r, 'g> {
     pub binned: u32,
     /// Fragments in lists.
     pub fragments: u32,
-    /// Tiles that [`Self::local`] left to lists.
+    /// Tiles that [`Self::local`] left to lists; lists that [`Self::linked`] has to sort.
     pub left: u32,
 }
 
@@ -89,6 +89,36 @@ impl<'r, 'g> Timed<'r, 'g> {
             timed.spans.push(local);
             timed.spans.extend(lists.by_ref());
             timed.spans.push(shade);
+        }
+        Ok(timed)
+    }
+
+    /// The same with linked lists, in regions that hold just what is drawn.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn linked(
+        rasterizer: &'r Rasterizer<'g>,
+        options: &Options<'_>,
+        layers: &[u32],
+    ) -> Result<Self, GpuError> {
+        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        let room = &mut timed.room;
+        let (regions, passes) = room.link_exactly(drawn)?;
+        timed.fragments = regions.iter().map(|r| r.attempts).sum();
+        timed.spans.push((Span::Fill, passes));
+        timed.left = regions.iter().map(Region::unordered).sum();
+        // A list is no longer than its region.
+        let longest = regions.iter().map(|r| r.attempts).max().unwrap_or(0);
+        if timed.left > 0 {
+            timed
+                .spans
+                .push((Span::Sort, room.sort_linked_whole(longest)?));
+        }
+        for n in layers {
+            timed
+                .spans
+                .push((Span::Shade(*n), room.blend_linked(longest, *n)?));
         }
         Ok(timed)
     }

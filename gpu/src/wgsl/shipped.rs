@@ -39,6 +39,7 @@ const FILES: &[(&str, &str)] = shipped![
     "jagged",
     "lamp",
     "ldm",
+    "linked",
     "local",
     "maps",
     "march",

@@ -103,7 +103,7 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "tiles",
-        files: &["local"],
+        files: &["linked", "local"],
         chain: Chain::Frame,
         stages: &[
             in_tiles(
@@ -135,6 +135,7 @@ pub const FAMILIES: &[Family] = &[
                 ],
             ),
             in_tiles("local", &["local"]),
+            in_tiles("linked", &["linked", "linked_sort", "linked_blend"]),
         ],
         no_corpus: Some("every scene of a frame goes through it"),
     },

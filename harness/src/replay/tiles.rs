@@ -3,8 +3,8 @@
 use triptych_gpu::abuffer::BandResult;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_gpu::tiles::{self, Drawn, Local};
-use triptych_spec::abuffer::Sorted;
+use triptych_gpu::tiles::{self, Drawn, Linked, Local};
+use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::raster::Fragment;
 use triptych_spec::tiles::bin;
 
@@ -21,11 +21,12 @@ use crate::row::Class;
 const WORK_MAX: u64 = 1 << 18;
 
 /// The stages, and how each is compared.
-const STAGES: [(&str, Class); 4] = [
+const STAGES: [(&str, Class); 5] = [
     ("bin", Class::Exact),
     ("jagged", Class::Structure),
     ("shade", Class::Interval),
     ("local", Class::Interval),
+    ("linked", Class::Interval),
 ];
 
 /// Adds rows for the stages, which start from the spec's triangles and opaque surfaces. They have no twin
@@ -77,6 +78,7 @@ impl GpuLeg<'_> {
         };
         let drawn = tiles::run(rasterizer, options)?;
         let local = tiles::run_local(rasterizer, options)?;
+        let linked = tiles::run_linked(rasterizer, options, longest)?;
         let seen = Observed::<observe::Gpu, _>::new(self.label(), drawn);
         let skip = |stage, class, reason: &str, rows: &mut Rows| {
             rows.skip(stage, &self.spec.label, &self.label(), class, reason.into());
@@ -92,10 +94,12 @@ impl GpuLeg<'_> {
             Some(reason) => {
                 skip("shade", Class::Interval, reason, rows);
                 skip("local", Class::Interval, reason, rows);
+                skip("linked", Class::Interval, reason, rows);
             }
             None => {
                 self.judge_shade(&seen, rows);
                 self.judge_local(local, rows);
+                self.judge_linked(linked, rows);
             }
         }
         Ok(())
@@ -170,6 +174,37 @@ impl GpuLeg<'_> {
         });
         rows.add("local", &spec, &gpu, judgement);
     }
+
+    /// Linked lists by tiles as they were built, in order, and blended.
+    fn judge_linked(&self, linked: Linked, rows: &mut Rows) {
+        let spec = self.spec.derive(&self.spec.value);
+        let gpu = Observed::<observe::Gpu, _>::new(self.label(), linked);
+        let gpu = gpu.map(|s| s).taking(gpu.value.time);
+        let width = self.scene.size.width;
+        let judgement = compare(&spec, &gpu, |spec, linked| {
+            let built = |b: &BandResult| {
+                compare::lists::compare(&self.expected(&spec.sorted, b.band), &b.built)
+            };
+            let built = Judgement::sum(linked.bands.iter().map(built));
+            if built.differ() > 0 {
+                return built;
+            }
+            let ordered = |b: &BandResult| {
+                let must = part(&spec.sorted, b, width);
+                Some(compare::order::compare(&must, b.sorted.as_ref()?, width))
+            };
+            let ordered = linked.bands.iter().filter_map(ordered);
+            let picture = compare::image::compare(&spec.image, &linked.image, width);
+            Judgement::sum([picture, built].into_iter().chain(ordered))
+        });
+        rows.add("linked", &spec, &gpu, judgement);
+    }
+}
+
+/// Fragments of the longest list; `None` if links lead astray.
+fn longest(lists: &Lists) -> Option<u32> {
+    let flat = compare::order::flatten(lists)?;
+    flat.offsets.windows(2).map(|run| run[1] - run[0]).max()
 }
 
 /// The spec's lists of a band, with pixels counted from its first.

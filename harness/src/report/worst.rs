@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 43] = [
+const ORDER: [&str; 44] = [
     "leg",
     "all",
     "expect",
@@ -33,6 +33,7 @@ const ORDER: [&str; 43] = [
     "jagged",
     "shade",
     "local",
+    "linked",
     "count",
     "scan",
     "fill",

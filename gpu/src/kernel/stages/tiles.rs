@@ -67,3 +67,15 @@ pub(super) const LOCAL: Stage = Stage {
         writes how many they are and their digest to `digests`. A tile of which it cannot is left \
         as it is, and digests.left counts it; of others the highest bit of bins[tile] is set.",
 };
+
+/// Linked lists, a region for each tile.
+pub(super) const LINKED: Stage = Stage {
+    name: "linked",
+    file: "linked",
+    compute: &["linked", "linked_sort", "linked_blend"],
+    fragment: &[],
+    contract: "A workgroup for each tile of tiled.items: links the fragments of each pixel from the \
+        triangles tiled.first of its bin on, tiled.count of them, in nodes of its region, of which it \
+        counts all attempts and stores as many as there is room for; says which lists came in order. \
+        Second pass: relinks those that did not. Third: blends all into `picture`.",
+};

@@ -24,7 +24,7 @@ pub(super) fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError
     }
     let lists = differ(sources, native, &["raster", "abuffer"])?.next();
     let rivals = differ(sources, native, &RIVALS)?.next();
-    let tiles = differ(sources, native, &["tiles", "local"])?.next();
+    let tiles = differ(sources, native, &["tiles", "linked", "local"])?.next();
     Ok(match (lists, rivals, tiles) {
         (None, Some(_), _) => Part::Rivals,
         (None, None, Some(_)) => Part::Tiles,
