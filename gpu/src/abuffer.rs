@@ -16,6 +16,7 @@ use crate::frame::Band;
 use crate::pass::Pass;
 use crate::raster::{Attempts, Rasterizer};
 pub use attempt::STEPS;
+pub(crate) use attempt::dispatches;
 use attempt::{Done, Run, Tried};
 pub use buffers::PROGRESS;
 pub use stages::{Stage, Stages};

@@ -27,6 +27,7 @@ mod shown;
 pub mod skips;
 pub mod spec;
 mod stop;
+pub mod layouts;
 pub mod tiles;
 pub mod vertex;
 mod visible;

@@ -217,7 +217,7 @@ impl Run<'_, '_> {
 /// The most dispatches that sort and resolve take for lists of at most `longest` nodes:
 /// merging a list of n nodes takes at most 4 n steps in each of at most log2(n) + 1
 /// passes.
-pub(super) fn dispatches(longest: u32) -> u64 {
+pub(crate) fn dispatches(longest: u32) -> u64 {
     let passes = u64::from(longest.max(1).ilog2()) + 1;
     4 * u64::from(longest) * passes / STEPS + 1
 }

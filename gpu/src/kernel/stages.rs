@@ -1,13 +1,14 @@
 //! The stages that kernels implement: where each one's entry points are, and what an
 //! invocation of it does.
 
+mod layouts;
 mod rivals;
 mod tiles;
 
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 36] = [
+pub const STAGES: [Stage; 42] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -85,6 +86,12 @@ pub const STAGES: [Stage; 36] = [
     tiles::BIN,
     tiles::JAGGED,
     tiles::SHADE,
+    layouts::BUCKET,
+    layouts::PRECALC,
+    layouts::RANK,
+    layouts::PACKED,
+    layouts::REGIONS,
+    layouts::ORDERED,
     Stage {
         name: "count",
         file: "grid",

@@ -36,7 +36,10 @@ const FILES: &[(&str, &str)] = shipped![
     "item",
     "jagged",
     "lamp",
+    "layouts",
+    "layouts_samples",
     "ldm",
+    "listing",
     "maps",
     "march",
     "meet",
@@ -46,7 +49,11 @@ const FILES: &[(&str, &str)] = shipped![
     "near_wide",
     "nearest",
     "opened",
+    "ordered",
+    "ordered_samples",
     "overlap",
+    "packed",
+    "packed_samples",
     "parameters",
     "peel",
     "place",
@@ -54,6 +61,8 @@ const FILES: &[(&str, &str)] = shipped![
     "raster_samples",
     "ray",
     "receiver",
+    "regions",
+    "regions_samples",
     "relink",
     "rival",
     "rsm",
@@ -63,6 +72,8 @@ const FILES: &[(&str, &str)] = shipped![
     "search",
     "shown",
     "slice",
+    "slots",
+    "slots_wide",
     "sort",
     "sorted",
     "surface",
@@ -101,6 +112,15 @@ impl Sources {
     pub fn with_wide_atomics(mut self) -> Self {
         if let Some(text) = self.0.get("near_wide").cloned() {
             self.0.insert("near".into(), text);
+        }
+        self
+    }
+
+    /// The same where it has all of them (`SHADER_INT64_ATOMIC_ALL_OPS`): lists that are in order
+    /// while they are built take one pass.
+    pub fn with_all_wide_atomics(mut self) -> Self {
+        if let Some(text) = self.0.get("slots_wide").cloned() {
+            self.0.insert("slots".into(), text);
         }
         self
     }

@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 42] = [
+const ORDER: [&str; 48] = [
     "leg",
     "all",
     "expect",
@@ -32,6 +32,12 @@ const ORDER: [&str; 42] = [
     "bin",
     "jagged",
     "shade",
+    "bucket",
+    "precalc",
+    "rank",
+    "packed",
+    "regions",
+    "ordered",
     "count",
     "scan",
     "fill",
