@@ -11,6 +11,7 @@ mod packed;
 mod precalc;
 mod regions;
 mod room;
+mod timed;
 
 use std::time::Duration;
 
@@ -23,7 +24,9 @@ use crate::error::GpuError;
 use crate::frame::Band;
 use crate::pass::Pass;
 use crate::raster::{Attempts, Need, Rasterizer};
+pub use arrays::{BEGINS, ENDS};
 pub use ordered::is_wide;
+pub use timed::{Span, Timed};
 
 /// Entries of a pixel's array in the first attempt.
 pub const ENTRIES: u32 = 8;
@@ -84,7 +87,7 @@ pub struct Listing {
     pub entries: u32,
     /// Regions of nodes.
     pub regions: u32,
-    /// Entries or links of a dispatch.
+    /// Entries, or links, of a dispatch.
     pub items: u32,
     /// Entries in a row that are in order.
     pub run: u32,

@@ -60,6 +60,13 @@ fn fill(fragment: Fragment) {
 }
 
 @compute @workgroup_size(WORKGROUP)
+fn bucket_clear(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < band_pixels() {
+        atomicStore(&counts[id.x], 0u);
+    }
+}
+
+@compute @workgroup_size(WORKGROUP)
 fn bucket(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= frame.items {
         return;

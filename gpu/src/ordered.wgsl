@@ -22,6 +22,11 @@ const EOL: u32 = 0xffffffffu;
 // Steps of an invocation, as in relink.wgsl: drivers end what takes too long.
 const STEPS: u32 = 16384u;
 
+// Times that an invocation finds nobody to have been first, and yet hangs no node: a weak exchange may
+// fail for no reason. What stands in for a pixel that is not covered, so that its neighbours have four,
+// exchanges nothing at all, and would go on for ever.
+const TRIES: u32 = 16u;
+
 var<private> steps_left: u32 = STEPS;
 
 fn may_step() -> bool {

@@ -4,6 +4,9 @@
 // Of a region, as many nodes are stored as it has room for; its counter counts all.
 //#import listing
 
+// End of a list, and an empty list's head.
+const EOL: u32 = 0xffffffffu;
+
 struct Node {
     key: u32,
     next: u32,
@@ -30,6 +33,18 @@ fn insert(fragment: Fragment, region: u32) {
     let next = atomicExchange(&heads[fragment.pixel], address);
     nodes[address] = Node(fragment.key, next, fragment.prim, mask);
     colours[address] = faces[fragment.prim];
+}
+
+// Empty lists.
+@compute @workgroup_size(WORKGROUP)
+fn regions_clear(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < band_pixels() {
+        atomicStore(&heads[id.x], EOL);
+    }
+    // A band may have fewer pixels than there are regions.
+    for (var i = id.x; i < listing.regions; i += band_pixels()) {
+        atomicStore(&counters[i], 0u);
+    }
 }
 
 // Stage regions: as stage build; a workgroup has a region, which others may share.

@@ -224,8 +224,15 @@ pub fn regions(
         if place < capacity {
             let address = region * capacity + place;
             let next = std::mem::replace(&mut lists.heads[f.pixel as usize], address);
-            let Fragment { key, prim, mask, .. } = f;
-            lists.nodes[address as usize] = Some(Node { key, next, prim, mask });
+            let Fragment {
+                key, prim, mask, ..
+            } = f;
+            lists.nodes[address as usize] = Some(Node {
+                key,
+                next,
+                prim,
+                mask,
+            });
         }
     });
     lists

@@ -51,7 +51,8 @@ fn joined(parts: &[Runs]) -> Runs {
             let own = part.offsets[pixel] as usize..part.offsets[pixel + 1] as usize;
             all.entries.extend(&part.entries[own]);
         }
-        all.offsets.push(u32::try_from(all.entries.len()).expect("few"));
+        all.offsets
+            .push(u32::try_from(all.entries.len()).expect("few"));
     }
     all
 }
@@ -62,11 +63,16 @@ proptest! {
     /// Entries are in the order of their fragments, and are these fragments.
     #[test]
     fn entries_are_fragments(
-        keys in [0..=0x7fff_ffff_u32, 0..4],
-        prims in [0..PRIMS_MAX, 0..4],
+        (near, keys) in (0..0x7fff_fff0_u32, [0..4_u32, 0..4]),
+        (first, prims) in (0..PRIMS_MAX - 4, [0..4_u32, 0..4]),
         mask in 1..=255_u32,
     ) {
-        let made = [0, 1].map(|i| Fragment { pixel: 7, prim: prims[i], key: keys[i], mask });
+        let made = [0, 1].map(|i| Fragment {
+            pixel: 7,
+            prim: first + prims[i],
+            key: near + keys[i],
+            mask,
+        });
         for f in made {
             prop_assert_eq!(fragment(7, entry(&f)), f);
             prop_assert!(ALL.contains(&entry(&f)), "{:?}", f);

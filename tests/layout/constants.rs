@@ -4,6 +4,7 @@ use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
+use triptych_gpu::layouts::{BEGINS, ENDS};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
@@ -11,6 +12,7 @@ use triptych_gpu::tiles::CONTIGUOUS;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
+use triptych_spec::layouts::MASK_BITS;
 use triptych_spec::ldm::{PLANE_BITS, WEIGHT_BITS};
 use triptych_spec::rsm::{COARSE_BITS, PLACE_MAX};
 use triptych_spec::tiles::{ROWS, SIDE};
@@ -58,6 +60,9 @@ fn constants_are_those_of_rust() {
         ("SIDE", i64::from(SIDE)),
         ("ROWS", i64::from(ROWS)),
         ("CONTIGUOUS", i64::from(CONTIGUOUS)),
+        ("MASK_BITS", i64::from(MASK_BITS)),
+        ("BEGINS", i64::from(BEGINS)),
+        ("ENDS", i64::from(ENDS)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

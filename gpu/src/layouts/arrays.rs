@@ -12,10 +12,10 @@ use crate::frame::WORKGROUP;
 use crate::lists::long_passes;
 
 /// A dispatch that blends begins with nothing. Twin: `BEGINS` in `layouts.wgsl`.
-pub(super) const BEGINS: u32 = 1;
+pub const BEGINS: u32 = 1;
 
 /// It ends with what lies behind. Twin: `ENDS` in `layouts.wgsl`.
-pub(super) const ENDS: u32 = 2;
+pub const ENDS: u32 = 2;
 
 const BUFFERS: [&str; 2] = ["listed", "merged"];
 

@@ -6,7 +6,7 @@ use triptych_spec::abuffer::Lists;
 use triptych_spec::layouts::{ALL, Entry};
 
 use super::arrays::{BEGINS, ENDS, Linked};
-use super::room::{Room, pixels_max};
+use super::room::{Room, Step, pixels_max};
 use super::{Built, ENTRIES, Layout, Listing, Options, memory};
 use crate::abuffer::BandResult;
 use crate::error::GpuError;
@@ -55,9 +55,7 @@ pub(super) fn run(
     let asked = options.arrays.unwrap_or(u32::MAX).max(1);
     let most = most_entries(rasterizer, pixels).min(asked);
     let first = options.capacity.map_or(ENTRIES, |nodes| nodes / pixels);
-    room.zeros("counts", pixels.into())?;
-    room.zeros("unfinished", 1)?;
-    room.zeros("offsets", 1)?;
+    make(&mut room)?;
     let linked = || Linked::new(pixels, &rasterizer.colours);
     let mut bucket = Bucket {
         room,
@@ -97,11 +95,8 @@ fn depths(rasterizer: &Rasterizer<'_>) -> Range<Entry> {
 
 impl Bucket<'_, '_> {
     fn make_room(&mut self, entries: u32) -> Result<(), GpuError> {
-        let pixels = self.room.pixels();
-        self.room.listing.entries = entries;
         self.all.entries = entries;
-        let words = 2 * u64::from(entries) * u64::from(pixels);
-        self.room.zeros("listed", words)
+        make_room(&mut self.room, entries)
     }
 
     /// All ranges, nearest first.
@@ -117,7 +112,7 @@ impl Bucket<'_, '_> {
                 continue;
             }
             if range == ALL {
-                let stored = self.stored(&counts)?;
+                let stored = stored(&self.room, &counts)?;
                 self.all.overflowed.push((self.room.band, stored));
             }
             let entries = longest.min(self.most);
@@ -155,8 +150,9 @@ impl Bucket<'_, '_> {
             until_face,
             ..self.room.listing
         };
-        self.room.clear("counts", None)?;
-        let steps = self.room.draw("bucket")?;
+        let clear = self.room.per_pixel("bucket_clear", self.room.listing)?;
+        let mut steps = vec![Step::Other(clear)];
+        steps.extend(self.room.draw("bucket")?);
         self.all.build += self.room.submit(&steps)?;
         let (gpu, pixels) = (self.room.rasterizer.gpu, self.room.pixels() as usize);
         gpu.read(self.room.get("counts"), pixels)
@@ -182,16 +178,56 @@ impl Bucket<'_, '_> {
         self.all.finish += self.room.submit(&steps)?;
         read(&self.room, &mut self.sorted)
     }
+}
 
-    /// What an attempt without enough room stored.
-    fn stored(&self, counts: &[u32]) -> Result<Lists, GpuError> {
-        let room = &self.room;
-        let mut linked = Linked::new(room.pixels(), &room.rasterizer.colours);
-        each(room, counts, |pixel, own| linked.extend(pixel, own))?;
-        let counted = counts.iter().map(|n| u64::from(*n)).sum::<u64>();
-        let counted = u32::try_from(counted).unwrap_or(SATURATED);
-        Ok(linked.counted(counted))
+/// Buffers that do not depend on how many entries there are.
+fn make(room: &mut Room<'_, '_>) -> Result<(), GpuError> {
+    room.zeros("counts", room.pixels().into())?;
+    // What kernels bind of lists in other layouts.
+    room.zeros("unfinished", 1)?;
+    room.zeros("offsets", 1)
+}
+
+fn make_room(room: &mut Room<'_, '_>, entries: u32) -> Result<(), GpuError> {
+    room.listing.entries = entries;
+    room.zeros("listed", 2 * u64::from(entries) * u64::from(room.pixels()))
+}
+
+/// Counts the fragments of a whole target, and makes room for the longest list at every pixel.
+pub(super) fn make_exactly(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
+    make(room)?;
+    make_room(room, 1)?;
+    room.submit(&room.draw("bucket")?)?;
+    let gpu = room.rasterizer.gpu;
+    let counts: Vec<u32> = gpu.read(room.get("counts"), room.pixels() as usize)?;
+    let longest = counts.iter().copied().max().unwrap_or(0);
+    let most = most_entries(room.rasterizer, room.pixels());
+    if longest > most {
+        return Err(GpuError::Limit {
+            adapter: gpu.name.clone(),
+            what: "an array for each pixel",
+            needed: longest.into(),
+            limit: most.into(),
+        });
     }
+    make_room(room, longest.max(1))?;
+    let counted: u64 = counts.iter().map(|n| u64::from(*n)).sum();
+    Ok(u32::try_from(counted).unwrap_or(u32::MAX))
+}
+
+/// The arrays as they are.
+pub(super) fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
+    let gpu = room.rasterizer.gpu;
+    let counts: Vec<u32> = gpu.read(room.get("counts"), room.pixels() as usize)?;
+    stored(room, &counts)
+}
+
+/// The same, where so many fragments were counted: those that there was room for.
+fn stored(room: &Room<'_, '_>, counts: &[u32]) -> Result<Lists, GpuError> {
+    let mut linked = Linked::new(room.pixels(), &room.rasterizer.colours);
+    each(room, counts, |pixel, own| linked.extend(pixel, own))?;
+    let counted = counts.iter().map(|n| u64::from(*n)).sum::<u64>();
+    Ok(linked.counted(u32::try_from(counted).unwrap_or(SATURATED)))
 }
 
 /// Reads the entries of each pixel.
@@ -236,7 +272,13 @@ mod tests {
     #[test]
     fn ranges_split_until_one_entry_is_left() {
         let depths = [1000, 0]..[1011, 0];
-        for target in [[1000, 0], [1010, 77], [1010, u32::MAX], [0, 0], [u32::MAX, 3]] {
+        for target in [
+            [1000, 0],
+            [1010, 77],
+            [1010, u32::MAX],
+            [0, 0],
+            [u32::MAX, 3],
+        ] {
             let (mut range, mut splits) = (ALL, 0);
             while let Some(middle) = middle(&range, &depths) {
                 assert!(range.start < middle && middle < range.end, "{range:?}");
@@ -249,6 +291,10 @@ mod tests {
             }
             assert!(range.contains(&target), "{target:?} in {range:?}");
         }
-        assert_eq!(middle(&ALL, &depths).map(|m| m[0]), Some(1005), "of the depths");
+        assert_eq!(
+            middle(&ALL, &depths).map(|m| m[0]),
+            Some(1005),
+            "of the depths"
+        );
     }
 }

@@ -37,8 +37,14 @@ pub fn of_node(layout: Layout) -> u64 {
     }
 }
 
-/// Most bytes at a time of the lists of a whole target of so many pixels, with the picture and the opaque
-/// surfaces: `fragments` in all, `longest` of a pixel. Of regions, each has room for `fullest` nodes.
+/// Bytes of a buffer, of which none is shorter.
+fn buffer(bytes: u64) -> u64 {
+    bytes.max(16)
+}
+
+/// Most bytes at a time of the lists of a whole target of so many pixels, each with so many samples, with
+/// the picture and the opaque surfaces: `fragments` in all, `longest` of a pixel. Of regions, each has room
+/// for `fullest` nodes. For targets of 4 pixels or more.
 pub fn peak(
     layout: Layout,
     [pixels, samples]: [u32; 2],
@@ -48,22 +54,27 @@ pub fn peak(
 ) -> u64 {
     let pixels = u64::from(pixels);
     let nodes = match layout {
-        Layout::Bucket => pixels * u64::from(longest),
+        Layout::Bucket => pixels * u64::from(longest.max(1)),
         Layout::Regions => u64::from(REGIONS) * u64::from(fullest),
-        Layout::Precalc | Layout::Packed | Layout::Ordered => fragments,
+        Layout::Precalc | Layout::Packed => fragments,
+        // An invocation may find the node unneeded that it took.
+        Layout::Ordered => 2 * fragments,
     };
     // The longest lists are merged from one buffer to another.
     let merged = match layout {
         Layout::Bucket | Layout::Precalc if longest > crate::lists::LONG => ENTRY * nodes,
         _ => 0,
     };
-    // Counters, one more offset, sums of parts of the pixels.
+    let word = buffer(4);
     let few = match layout {
-        Layout::Bucket => 0,
-        Layout::Precalc => 4 + 4 * pixels.div_ceil(crate::lists::TILE.into()),
-        Layout::Packed => 4 + 4,
+        // Words that kernels bind.
+        Layout::Bucket => 2 * word,
+        // One more offset, sums of parts of the pixels, a word.
+        Layout::Precalc => 4 + buffer(4 * pixels.div_ceil(crate::lists::TILE.into())) + word,
+        // Counter, word before the pixels' progress.
+        Layout::Packed => word + 4,
         Layout::Regions => 4 * u64::from(REGIONS) + 4,
-        Layout::Ordered => 4 + 4,
+        Layout::Ordered => 2 * word,
     };
     of_pixel(layout, samples) * pixels + of_node(layout) * nodes + merged + few
 }

@@ -27,21 +27,16 @@ pub(super) fn attempt(
     let mut room = Room::new(rasterizer, Layout::Ordered, options, run, is_opaque)?;
     make(&mut room)?;
     let mut all = Built::default();
-    all.build += room.submit(&build(&room)?)?;
+    let mut steps = vec![clear(&room)?];
+    steps.extend(draw(&room)?);
+    all.build += room.submit(&steps)?;
     let claimed = gpu.word(room.get("counter"), 0)?;
     if claimed > room.frame.capacity {
         // An invocation that finds its node unneeded keeps it: at most one node for each fragment is wasted,
         // and of those there are no more than were claimed.
         return Ok(Tried::Needs(claimed.saturating_mul(2), None));
     }
-    if gpu.word(room.get("unfinished"), 0)? != 0 {
-        return Err(GpuError::Limit {
-            adapter: gpu.name.clone(),
-            what: "ordered",
-            needed: STEPS + 1,
-            limit: STEPS,
-        });
-    }
+    check_steps(&room)?;
     let lists = lists(&room)?;
     if room.is_shown() {
         let blend = room.per_pixel("ordered_blend", room.listing)?;
@@ -70,16 +65,34 @@ pub(super) fn make(room: &mut Room<'_, '_>) -> Result<(), GpuError> {
     room.zeros("in_order", nodes)
 }
 
-/// Empties, and goes through the triangles, twice unless one word holds key and triangle.
-pub(super) fn build(room: &Room<'_, '_>) -> Result<Vec<Step>, GpuError> {
+/// Fails by name if an invocation ran out of steps.
+pub(super) fn check_steps(room: &Room<'_, '_>) -> Result<(), GpuError> {
+    let gpu = room.rasterizer.gpu;
+    match gpu.word(room.get("unfinished"), 0)? {
+        0 => Ok(()),
+        _ => Err(GpuError::Limit {
+            adapter: gpu.name.clone(),
+            what: "ordered",
+            needed: STEPS + 1,
+            limit: STEPS,
+        }),
+    }
+}
+
+/// Empties lists and nodes.
+pub(super) fn clear(room: &Room<'_, '_>) -> Result<Step, GpuError> {
     let links = room.pixels() + room.frame.capacity;
     let listing = Listing {
         items: links,
         ..room.listing
     };
     let clear = room.pass("ordered_clear", listing, links.div_ceil(WORKGROUP))?;
-    let mut steps = vec![Step::Other(clear)];
-    steps.extend(room.draw("ordered")?);
+    Ok(Step::Other(clear))
+}
+
+/// Goes through the triangles, twice unless one word holds key and triangle.
+pub(super) fn draw(room: &Room<'_, '_>) -> Result<Vec<Step>, GpuError> {
+    let mut steps = room.draw("ordered")?;
     if !is_wide(room.rasterizer) {
         steps.extend(room.draw("ordered_ties")?);
     }
@@ -87,7 +100,7 @@ pub(super) fn build(room: &Room<'_, '_>) -> Result<Vec<Step>, GpuError> {
 }
 
 /// The lists as they are linked. One that does not end is left sometime.
-fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
+pub(super) fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
     let (pixels, nodes) = (room.pixels() as usize, room.frame.capacity as usize);
     let links: Vec<u32> = gpu.read(room.get("links"), pixels + nodes)?;

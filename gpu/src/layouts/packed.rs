@@ -83,7 +83,7 @@ pub(super) fn until_done(
 
 /// The nodes as they are, with addresses for links. A colour that a triangle's may be rounded to stands
 /// for the triangle's.
-fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
+pub(super) fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
     let (pixels, capacity) = (room.pixels(), room.frame.capacity);
     let attempts = gpu.word(room.get("counter"), 0)?;
@@ -116,4 +116,3 @@ fn restored(packed: u32, face: Option<&[f32; 4]>) -> [f32; 4] {
     let unpacked = || bytes.map(|byte| byte as f32 / 255.0);
     face.filter(is_rounded).copied().unwrap_or_else(unpacked)
 }
-

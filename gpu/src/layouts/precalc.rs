@@ -73,13 +73,13 @@ pub(super) fn count(room: &Room<'_, '_>) -> Result<Vec<Step>, GpuError> {
 }
 
 /// The longest of some runs.
-pub(super) fn longest(offsets: &[u32]) -> u32 {
+fn longest(offsets: &[u32]) -> u32 {
     let lengths = offsets.windows(2).map(|run| run[1].saturating_sub(run[0]));
     lengths.max().unwrap_or(0)
 }
 
 /// The runs as linked lists. Offsets that a kernel of a user's wrote may be anything.
-fn linked(
+pub(super) fn linked(
     room: &Room<'_, '_>,
     offsets: &[u32],
     counted: u32,

@@ -96,7 +96,7 @@ fn until_done(
 
 /// The nodes of all regions, one region after another without gaps, with links to match. What leads to a
 /// place that no counter handed out leads nowhere.
-fn lists(room: &Room<'_, '_>, attempts: &[u32]) -> Result<Lists, GpuError> {
+pub(super) fn lists(room: &Room<'_, '_>, attempts: &[u32]) -> Result<Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
     let capacity = room.frame.capacity as usize;
     let all = REGIONS as usize * capacity;
@@ -133,7 +133,12 @@ fn lists(room: &Room<'_, '_>, attempts: &[u32]) -> Result<Lists, GpuError> {
         for at in region * capacity..region * capacity + n {
             let [key, next, prim, mask] = nodes[at];
             let next = moved(next);
-            lists.nodes.push(Node { key, next, prim, mask });
+            lists.nodes.push(Node {
+                key,
+                next,
+                prim,
+                mask,
+            });
             lists.colours.push(colours[at]);
         }
     }

@@ -145,7 +145,10 @@ impl Adapter {
         }
         self.kernels = Kernels::with_foreign(Sources::shipped(false), foreign);
         // A user's kernel knows the baseline's bindings.
-        let wide = || match foreign.iter().any(|f| ["peel", "ordered"].contains(&f.stage.name)) {
+        let wide = || match foreign
+            .iter()
+            .any(|f| ["peel", "ordered"].contains(&f.stage.name))
+        {
             true => Kernels::with_foreign(Sources::shipped(true), foreign),
             false => Kernels::with_foreign(native(&self.gpu), foreign),
         };

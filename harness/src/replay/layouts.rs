@@ -37,7 +37,13 @@ pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuE
     for layout in Layout::ALL {
         if let Some(reason) = reason_not_run(leg, extent, layout) {
             let label = leg.label();
-            rows.skip(layout.name(), &leg.spec.label, &label, Class::Structure, reason);
+            rows.skip(
+                layout.name(),
+                &leg.spec.label,
+                &label,
+                Class::Structure,
+                reason,
+            );
             continue;
         }
         let rasterizer = match &mut rasterizer {

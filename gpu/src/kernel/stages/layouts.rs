@@ -6,10 +6,10 @@ use super::Stage;
 pub(super) const BUCKET: Stage = Stage {
     name: "bucket",
     file: "layouts",
-    compute: &["bucket"],
+    compute: &["bucket_clear", "bucket"],
     fragment: &["bucket_fragment"],
     contract: "An entry is a depth key, and a triangle times 256 plus a mask, of a fragment as build stores \
-        it. Those from listing.from to before listing.until go to listed[listing.entries p + n] of pixel p, where n is \
+        it. First pass: counts[p] is 0. Second: those from listing.from to before listing.until go to listed[listing.entries p + n] of pixel p, where n is \
         what counts[p] was before 1 is added, unless n is listing.entries or more.",
 };
 
@@ -59,9 +59,9 @@ pub(super) const PACKED: Stage = Stage {
 pub(super) const REGIONS: Stage = Stage {
     name: "regions",
     file: "regions",
-    compute: &["regions"],
+    compute: &["regions_clear", "regions"],
     fragment: &["regions_fragment"],
-    contract: "As build, with a counter for each of listing.regions regions of frame.capacity nodes. Which \
+    contract: "First pass: empty lists, and counters of 0. Second: as build, with a counter for each of listing.regions regions of frame.capacity nodes. Which \
         region a fragment takes a node of is left open; an address is the region times frame.capacity \
         plus what its counter was. What exceeds it is counted, and touches neither heads nor nodes.",
 };

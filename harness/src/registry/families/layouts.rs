@@ -11,7 +11,7 @@ pub(super) const LAYOUTS: Family = Family {
     stages: &[
         Stage {
             name: "bucket",
-            compute: Twin::Entries(&["bucket"]),
+            compute: Twin::Entries(&["bucket_clear", "bucket"]),
             fragment: Twin::Entries(&["bucket_fragment"]),
         },
         Stage {
@@ -36,17 +36,12 @@ pub(super) const LAYOUTS: Family = Family {
         },
         Stage {
             name: "regions",
-            compute: Twin::Entries(&["regions"]),
+            compute: Twin::Entries(&["regions_clear", "regions"]),
             fragment: Twin::Entries(&["regions_fragment"]),
         },
         Stage {
             name: "ordered",
-            compute: Twin::Entries(&[
-                "ordered_clear",
-                "ordered",
-                "ordered_ties",
-                "ordered_blend",
-            ]),
+            compute: Twin::Entries(&["ordered_clear", "ordered", "ordered_ties", "ordered_blend"]),
             fragment: Twin::Entries(&["ordered_fragment", "ordered_ties_fragment"]),
         },
     ],
