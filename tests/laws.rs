@@ -17,6 +17,9 @@
 //! | `abuffer::rivals` | peels find the nearest layers; orders that do not matter; closed forms and bounds of what else is made of layers |
 //! | `tiles` | bins hold what is covered; lists and pictures are those of `abuffer`; nothing between entries |
 //! | `tiles::adapters` | however few triangles a dispatch draws |
+//! | `layouts` | arrays, runs, regions and ordered lists hold what lists of `abuffer` hold; what is full says so |
+//! | `layouts::colours` | however channels are rounded to bytes, pictures stay inside the bounds |
+//! | `layouts::adapters` | ranges of depth; long lists; room, on every adapter |
 //! | `grid::rays` | brute force; reversal, parts, translation, splits, resolution; exact arithmetic |
 //! | `grid::cells` | which cells list a triangle; linked lists; bricks; boundaries; limits |
 //! | `grid::kernel` | no arithmetic that WGSL allows leads past what a ray meets |
@@ -61,6 +64,8 @@ mod gpu;
 mod grid;
 #[path = "laws/hbao.rs"]
 mod hbao;
+#[path = "laws/layouts.rs"]
+mod layouts;
 #[path = "laws/ldm.rs"]
 mod ldm;
 #[path = "laws/loose.rs"]

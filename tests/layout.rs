@@ -16,7 +16,7 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 19] = [
+const ROOTS: [&str; 23] = [
     "abuffer",
     "alpha",
     "ceiling",
@@ -25,13 +25,17 @@ const ROOTS: [&str; 19] = [
     "dual",
     "grid",
     "hbao",
+    "layouts",
     "ldm",
     "linked",
     "local",
     "multisample",
     "nearest",
+    "ordered",
+    "packed",
     "peel",
     "raster",
+    "regions",
     "rsm",
     "tiles",
     "vertex",
@@ -39,7 +43,14 @@ const ROOTS: [&str; 19] = [
 ];
 
 /// The files that have entry points of others, with other imports.
-const VARIANTS: [&str; 2] = ["abuffer_samples", "raster_samples"];
+const VARIANTS: [&str; 6] = [
+    "abuffer_samples",
+    "layouts_samples",
+    "ordered_samples",
+    "packed_samples",
+    "raster_samples",
+    "regions_samples",
+];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
 const STORAGE_BUFFERS: usize = 8;
@@ -206,8 +217,8 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 72,
-        "three functions in twelve programs of two forms each"
+        seen, 120,
+        "three functions in twenty programs of two forms each"
     );
 }
 

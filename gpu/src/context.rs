@@ -14,6 +14,7 @@ use crate::kernel::TARGET_FORMAT;
 /// timestamps for `triptych bench`, targets of 2 and 8 samples a pixel.
 const FEATURES: wgpu::Features = wgpu::Features::SHADER_INT64
     .union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX)
+    .union(wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(wgpu::Features::FLOAT32_BLENDABLE)
     .union(wgpu::Features::TIMESTAMP_QUERY)
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
@@ -119,6 +120,12 @@ impl Gpu {
     /// Whether the adapter has atomic minima of 64-bit integers.
     pub fn has_int64_atomics(&self) -> bool {
         let needed = wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
+        self.has_int64() && self.device.features().contains(needed)
+    }
+
+    /// Whether the adapter has all atomics of 64-bit integers, which tell what was there before.
+    pub fn has_all_int64_atomics(&self) -> bool {
+        let needed = wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
         self.has_int64() && self.device.features().contains(needed)
     }
 

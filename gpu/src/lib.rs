@@ -14,6 +14,7 @@ pub mod frame;
 pub mod grid;
 pub mod hbao;
 pub mod kernel;
+pub mod layouts;
 pub mod ldm;
 pub mod lists;
 pub mod pass;

@@ -70,6 +70,8 @@ pub struct Rasterizer<'g> {
     pub(crate) colours: Vec<[f32; 4]>,
     /// First and last row with a sample, of each triangle that has any.
     rows: Vec<Option<[i64; 2]>>,
+    /// The smallest and the largest depth key of a corner.
+    depths: [u32; 2],
     target: wgpu::TextureView,
     passes: RefCell<Vec<Pass>>,
 }
@@ -110,6 +112,7 @@ impl<'g> Rasterizer<'g> {
                 .iter()
                 .map(|c| sampled_rows(c, bits, height))
                 .collect(),
+            depths: depths(&corners),
             corners: gpu.upload("corners", &corners)?,
             handed: None,
             faces: gpu.upload("faces", faces)?,
@@ -176,6 +179,11 @@ impl<'g> Rasterizer<'g> {
         u32::try_from(self.rows.len()).expect("rows of triangles are words")
     }
 
+    /// Depth keys of fragments lie between these.
+    pub(crate) fn depths(&self) -> [u32; 2] {
+        self.depths
+    }
+
     /// Nine numbers for each of them.
     pub(crate) fn corners(&self) -> &wgpu::Buffer {
         &self.corners
@@ -237,6 +245,12 @@ pub fn per_pixel(
     let start = Instant::now();
     gpu.submit(encoder)?;
     Ok(start.elapsed())
+}
+
+/// The smallest and the largest depth key of a corner.
+fn depths(corners: &[[[i32; 3]; 3]]) -> [u32; 2] {
+    let keys = || corners.iter().flatten().map(|c| c[2].unsigned_abs());
+    [keys().min().unwrap_or(0), keys().max().unwrap_or(0)]
 }
 
 fn target(gpu: &Gpu, size: Size, samples: u32) -> Result<wgpu::TextureView, GpuError> {

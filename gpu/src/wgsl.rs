@@ -163,7 +163,8 @@ impl Linked {
         })?;
         let capabilities = Capabilities::default()
             | Capabilities::SHADER_INT64
-            | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
+            | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX
+            | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS;
         let info = Validator::new(ValidationFlags::all(), capabilities)
             .validate(&module)
             .map_err(|e| {

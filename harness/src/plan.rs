@@ -1,5 +1,6 @@
 //! What a scene needs, decided before anything runs.
 
+mod layouts;
 mod rivals;
 
 use triptych_spec::scene::Scene;
@@ -98,6 +99,7 @@ impl Plan {
         let samples = scene.samples.count();
         passes.extend(asked.passes(transparent, samples));
         passes.extend(by_tiles(transparent, samples, skip));
+        passes.extend(layouts::passes(transparent, skip));
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
             name: "depth test",

@@ -152,7 +152,8 @@ pub const RIVALS: [&str; 6] = ["peel", "dual", "alpha", "weighted", "density", "
 
 /// The stages of a frame that hand on what they make: not what takes the place of linked lists.
 pub fn handing_on() -> impl Iterator<Item = &'static Stage> {
-    let own = |family: &&Family| family.chain == Chain::Frame && family.name != "tiles";
+    let is_apart = |family: &Family| ["tiles", "layouts"].contains(&family.name);
+    let own = move |family: &&Family| family.chain == Chain::Frame && !is_apart(family);
     let stages = FAMILIES.iter().filter(own).flat_map(|family| family.stages);
     stages.filter(|stage| !RIVALS.contains(&stage.name))
 }

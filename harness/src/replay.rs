@@ -12,6 +12,7 @@ pub mod grid;
 mod hardware;
 mod judged;
 mod lanes;
+pub mod layouts;
 pub mod ldm;
 mod leg;
 mod legs;

@@ -13,6 +13,7 @@
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
 //! | | peel, dual, alpha, weighted, density, defocus | `gpu/src/peel.wgsl` and so on |
 //! | [`tiles`] | bin, jagged, shade | `gpu/src/tiles.wgsl` |
+//! | [`layouts`] | bucket, precalc, rank, packed, regions, ordered | `gpu/src/layouts.wgsl` and so on |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 //! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |
 //! | [`ldm`] | layers, chain, neighbours, occlusion, environment | `gpu/src/ldm.wgsl` |
@@ -22,6 +23,7 @@ pub mod abuffer;
 pub mod bound;
 pub mod camera;
 pub mod grid;
+pub mod layouts;
 pub mod ldm;
 pub mod matrix;
 pub mod raster;

@@ -8,6 +8,7 @@
 //!
 //! Everything here is exact. Twin: `gpu/src/tiles.wgsl`.
 
+mod linked;
 mod local;
 
 use std::ops::Range;
@@ -18,6 +19,7 @@ use crate::raster::{Fragment, Setup, sample};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
 
+pub use linked::linked;
 pub use local::{Digest, digest, local};
 
 /// Pixels along a side of a tile.

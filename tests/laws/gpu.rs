@@ -12,7 +12,7 @@ use triptych_harness::plan::{Asked, Plan};
 use triptych_harness::replay::gpu::{Adapter, Adapters, Drawn, From, GpuLeg};
 use triptych_harness::replay::rows::Rows;
 use triptych_harness::replay::spec::SpecRun;
-use triptych_harness::replay::{Extent, rivals, tiles};
+use triptych_harness::replay::{Extent, layouts, rivals, tiles};
 use triptych_harness::row::Verdict;
 use triptych_spec::abuffer::{Lens, Order, Target};
 use triptych_spec::raster::Samples;
@@ -221,6 +221,56 @@ proptest! {
                 let same = path != Path::Fragment || adapter.bits(path) == layers.primitives.bits;
                 if can && same {
                     rivals_agree(&layers, adapter, path)?;
+                }
+            }
+        }
+    }
+}
+
+/// Runs every layout and compares each; the first attempts have too little room.
+fn layouts_agree(layers: &Layers, adapter: &Adapter, path: Path) -> Result<(), TestCaseError> {
+    let plan = Plan::new(&layers.scene, true);
+    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
+    let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
+    let leg = GpuLeg {
+        adapter,
+        path,
+        scene: &layers.scene,
+        spec: &spec,
+        plan: &plan,
+        capacity: Some(spec.value.lists.attempts / 2),
+        from: From::Cover,
+    };
+    let mut rows = Rows::new("law", "layouts");
+    let failed = |e: GpuError| TestCaseError::fail(e.to_string());
+    layouts::run(&leg, Extent::All, &mut rows).map_err(failed)?;
+    let transparent = layers.scene.triangles.iter().any(|t| !t.is_opaque());
+    for row in &rows.rows {
+        let words = || rows.described.join("\n");
+        let must = if transparent {
+            Verdict::Agree
+        } else {
+            Verdict::Skipped
+        };
+        prop_assert_eq!(row.verdict(), must, "{:?}\n{}", row, words());
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(4))]
+
+    /// From the same triangles, every adapter and path has the spec's lists in every layout, with one
+    /// sample a pixel and with four.
+    #[test]
+    fn random_layouts(mut layers in layers(), samples in prop::sample::select(vec![1, 4])) {
+        let samples = Samples::standard(samples).expect("a pattern");
+        (layers.scene.samples, layers.primitives.samples) = (samples, samples);
+        for adapter in adapters() {
+            for path in Path::ALL {
+                let can = path != Path::Native || adapter.native.is_some();
+                if can && draws(adapter, path, &layers.primitives) {
+                    layouts_agree(&layers, adapter, path)?;
                 }
             }
         }

@@ -50,7 +50,7 @@ fn slots(jagged: &Jagged, tile: usize) -> Vec<usize> {
 }
 
 /// So many layers over a pixel, the first behind all others, and one over its neighbours.
-fn stack(layers: u32) -> Layers {
+pub fn stack(layers: u32) -> Layers {
     let corners = |size: i32, key: i32| [[0, 0, key], [size << 8, 0, key], [0, size << 8, key]];
     let snapped = (0..layers).flat_map(|i| {
         let key = i32::try_from(layers - i).expect("few layers");

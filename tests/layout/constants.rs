@@ -4,6 +4,7 @@ use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
+use triptych_gpu::layouts::{BEGINS, ENDS};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
@@ -11,6 +12,7 @@ use triptych_gpu::tiles::{CONTIGUOUS, FINISHED, IN_ORDER};
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
+use triptych_spec::layouts::MASK_BITS;
 use triptych_spec::ldm::{PLANE_BITS, WEIGHT_BITS};
 use triptych_spec::rsm::{COARSE_BITS, PLACE_MAX};
 use triptych_spec::tiles::{ROWS, SIDE};
@@ -60,6 +62,9 @@ fn constants_are_those_of_rust() {
         ("CONTIGUOUS", i64::from(CONTIGUOUS)),
         ("IN_ORDER", i64::from(IN_ORDER)),
         ("FINISHED", i64::from(FINISHED)),
+        ("MASK_BITS", i64::from(MASK_BITS)),
+        ("BEGINS", i64::from(BEGINS)),
+        ("ENDS", i64::from(ENDS)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

@@ -6,6 +6,7 @@ use naga::{Module, TypeInner};
 use triptych_gpu::abuffer::PROGRESS;
 use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
+use triptych_gpu::layouts::Listing;
 use triptych_gpu::ldm::Told;
 use triptych_gpu::rsm::{Parameters, View};
 use triptych_gpu::tiles::{List, Region, Tiled};
@@ -109,6 +110,14 @@ fn what_is_told_of_maps_is_that_of_rust() {
     everywhere("Link", &words(&["key", "next"]), layout);
     let tiled = layout_of!(Tiled: items capacity first count run groups layers stored);
     everywhere("Tiled", &tiled, layout);
+    let listing = layout_of!(Listing: entries regions items run first flags from_key from_face
+        until_key until_face links unused);
+    everywhere("Listing", &listing, layout);
+    everywhere(
+        "PackedNode",
+        &words(&["colour", "key", "face", "link"]),
+        layout,
+    );
     let list = layout_of!(List: start length filled);
     everywhere("List", &list, layout);
     let region = layout_of!(Region: first capacity attempts unused in_order);

@@ -54,7 +54,8 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
     // capacity, all of which the host has made the buffers for; and they follow no link
     // that the host has not certified for these very lists. Tiles have no links: entries are read
     // where the same kernels have counted and filled them, from the same triangles, in bins and
-    // lists whose capacity is that of the count.
+    // lists whose capacity is that of the count. So are those of other layouts, whose links are certified
+    // as well; packed and ordered ones lead nowhere but to nodes that a counter handed out.
     unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
 }
 

@@ -89,6 +89,7 @@ fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
     let of_pixels =
         matches!(stage.file, "peel" | "dual" | "alpha" | "weighted") && !walks.contains(&entry);
     let items = match (stage.file, stage.name) {
+        ("layouts" | "packed" | "regions" | "ordered", _) => of_layouts(entry),
         ("grid", _) => "cells.items",
         ("rsm", _) => "parameters.items",
         ("tiles", _) => "tiled.items",
@@ -114,6 +115,16 @@ fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
         _ => format!("    if id.x >= {items} {{\n        return;\n    }}\n"),
     };
     (given.join(", "), body)
+}
+
+/// How many items a kernel of a layout has.
+fn of_layouts(entry: &str) -> &'static str {
+    match entry {
+        "rank_runs" | "rank_merge" | "ordered_clear" => "listing.items",
+        "bucket" | "precalc_count" | "precalc_fill" | "packed" | "regions" | "ordered"
+        | "ordered_ties" => "frame.items",
+        _ => "frame.width * frame.rows",
+    }
 }
 
 /// What our own entry point is told of the invocation.

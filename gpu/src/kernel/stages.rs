@@ -1,13 +1,14 @@
 //! The stages that kernels implement: where each one's entry points are, and what an
 //! invocation of it does.
 
+mod layouts;
 mod rivals;
 mod tiles;
 
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 38] = [
+pub const STAGES: [Stage; 44] = [
     Stage {
         name: "transform",
         file: "vertex",
@@ -87,6 +88,12 @@ pub const STAGES: [Stage; 38] = [
     tiles::SHADE,
     tiles::LOCAL,
     tiles::LINKED,
+    layouts::BUCKET,
+    layouts::PRECALC,
+    layouts::RANK,
+    layouts::PACKED,
+    layouts::REGIONS,
+    layouts::ORDERED,
     Stage {
         name: "count",
         file: "grid",

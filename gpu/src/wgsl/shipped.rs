@@ -38,8 +38,11 @@ const FILES: &[(&str, &str)] = shipped![
     "item",
     "jagged",
     "lamp",
+    "layouts",
+    "layouts_samples",
     "ldm",
     "linked",
+    "listing",
     "local",
     "maps",
     "march",
@@ -50,7 +53,11 @@ const FILES: &[(&str, &str)] = shipped![
     "near_wide",
     "nearest",
     "opened",
+    "ordered",
+    "ordered_samples",
     "overlap",
+    "packed",
+    "packed_samples",
     "parameters",
     "peel",
     "place",
@@ -58,6 +65,8 @@ const FILES: &[(&str, &str)] = shipped![
     "raster_samples",
     "ray",
     "receiver",
+    "regions",
+    "regions_samples",
     "relink",
     "rival",
     "rsm",
@@ -65,9 +74,11 @@ const FILES: &[(&str, &str)] = shipped![
     "scan",
     "screen",
     "search",
-    "shown",
     "shade",
+    "shown",
     "slice",
+    "slots",
+    "slots_wide",
     "sort",
     "sorted",
     "steps",
@@ -107,6 +118,15 @@ impl Sources {
     pub fn with_wide_atomics(mut self) -> Self {
         if let Some(text) = self.0.get("near_wide").cloned() {
             self.0.insert("near".into(), text);
+        }
+        self
+    }
+
+    /// The same where it has all of them (`SHADER_INT64_ATOMIC_ALL_OPS`): lists that are in order
+    /// while they are built take one pass.
+    pub fn with_all_wide_atomics(mut self) -> Self {
+        if let Some(text) = self.0.get("slots_wide").cloned() {
+            self.0.insert("slots".into(), text);
         }
         self
     }

@@ -15,7 +15,6 @@ use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
 use crate::registry::{Chain, RIVALS};
-use crate::replay::Extent;
 use crate::replay::gpu::{Adapter, Drawn, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
@@ -23,8 +22,8 @@ use crate::replay::rivals::run_only;
 use crate::replay::rows::Rows;
 use crate::replay::rsm::{RsmLeg, RsmRun};
 use crate::replay::spec::SpecRun;
-use crate::replay::tiles;
 use crate::replay::vertex::VertexLeg;
+use crate::replay::{Extent, layouts, tiles};
 use crate::row::{Row, Verdict};
 use crate::scene::value::Capacity;
 use crate::scene::{Loaded, load_entry};
@@ -244,6 +243,7 @@ impl Ground {
         match part {
             Part::Rivals => run_only(rivals, &leg, Extent::All, rows),
             Part::Tiles => tiles::run(&leg, Extent::All, rows),
+            Part::Layouts => layouts::run(&leg, Extent::All, rows),
             _ => leg.run(rows).map(drop),
         }
     }

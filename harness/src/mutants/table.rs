@@ -12,12 +12,13 @@ use crate::corpus::{self, Entry};
 use crate::replay::gpu::PathName;
 use crate::text::hex;
 
-const TABLES: [(&str, &str); 9] = [
+const TABLES: [(&str, &str); 10] = [
     ("vertex.toml", include_str!("vertex.toml")),
     ("raster.toml", include_str!("raster.toml")),
     ("abuffer.toml", include_str!("abuffer.toml")),
     ("multisample.toml", include_str!("multisample.toml")),
     ("tiles.toml", include_str!("tiles.toml")),
+    ("layouts.toml", include_str!("layouts.toml")),
     ("rivals.toml", include_str!("rivals.toml")),
     ("grid.toml", include_str!("grid.toml")),
     ("rsm.toml", include_str!("rsm.toml")),

@@ -1,5 +1,7 @@
 //! The table of all stages, by family.
 
+mod layouts;
+
 use super::{Chain, Family, Stage, Twin};
 
 /// All families, in the order in which they run.
@@ -139,6 +141,7 @@ pub const FAMILIES: &[Family] = &[
         ],
         no_corpus: Some("every scene of a frame goes through it"),
     },
+    layouts::LAYOUTS,
     Family {
         name: "grid",
         files: &[],

@@ -96,9 +96,12 @@ fn numbered<F>(found: Vec<(String, F)>) -> Vec<(String, F)> {
 
 /// Kernels for an adapter with 64-bit integers, and with atomics of them if it has those.
 fn native(gpu: &Gpu) -> Sources {
-    let sources = Sources::shipped(true);
-    match gpu.has_int64_atomics() {
-        true => sources.with_wide_atomics(),
+    let mut sources = Sources::shipped(true);
+    if gpu.has_int64_atomics() {
+        sources = sources.with_wide_atomics();
+    }
+    match gpu.has_all_int64_atomics() {
+        true => sources.with_all_wide_atomics(),
         false => sources,
     }
 }
@@ -142,7 +145,10 @@ impl Adapter {
         }
         self.kernels = Kernels::with_foreign(Sources::shipped(false), foreign);
         // A user's kernel knows the baseline's bindings.
-        let wide = || match foreign.iter().any(|f| f.stage.name == "peel") {
+        let wide = || match foreign
+            .iter()
+            .any(|f| ["peel", "ordered"].contains(&f.stage.name))
+        {
             true => Kernels::with_foreign(Sources::shipped(true), foreign),
             false => Kernels::with_foreign(native(&self.gpu), foreign),
         };

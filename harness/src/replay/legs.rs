@@ -11,7 +11,7 @@ use super::run::Run;
 use super::spec::SpecRun;
 use super::stop::Stop;
 use super::vertex::{self, VertexLeg};
-use super::{end_to_end, hardware, own_vertices, rivals, skips, tiles};
+use super::{end_to_end, hardware, layouts, own_vertices, rivals, skips, tiles};
 use crate::cause::Cause;
 use crate::observe::{Observed, Spec};
 use crate::row::Class;
@@ -132,6 +132,7 @@ impl Run<'_> {
         let seen = leg.run(&mut self.rows)?;
         rivals::run(&leg, self.options.rivals, &mut self.rows)?;
         tiles::run(&leg, self.options.rivals, &mut self.rows)?;
+        layouts::run(&leg, self.options.rivals, &mut self.rows)?;
         if let Some(moved) = moved.as_ref().filter(|_| !from_own && !leg.by_band()) {
             // Whatever the leg was handed before, this run takes nothing but vertices.
             let leg = GpuLeg {

@@ -208,7 +208,7 @@ fn longest(lists: &Lists) -> Option<u32> {
 }
 
 /// The spec's lists of a band, with pixels counted from its first.
-fn part(all: &Sorted, band: &BandResult, width: u32) -> Sorted {
+pub(super) fn part(all: &Sorted, band: &BandResult, width: u32) -> Sorted {
     let first = (band.band.first * width) as usize;
     let end = first + (band.band.rows * width) as usize;
     let before = all.offsets[first];

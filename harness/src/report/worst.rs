@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 44] = [
+const ORDER: [&str; 50] = [
     "leg",
     "all",
     "expect",
@@ -34,6 +34,12 @@ const ORDER: [&str; 44] = [
     "shade",
     "local",
     "linked",
+    "bucket",
+    "precalc",
+    "rank",
+    "packed",
+    "regions",
+    "ordered",
     "count",
     "scan",
     "fill",

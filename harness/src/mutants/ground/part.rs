@@ -4,6 +4,9 @@ use triptych_gpu::wgsl::{Sources, WgslError};
 
 use crate::registry::RIVALS;
 
+/// Files of the lists in other layouts.
+pub(super) const LAYOUTS: [&str; 4] = ["layouts", "packed", "regions", "ordered"];
+
 /// What of a scene of triangles is compared.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
@@ -15,6 +18,8 @@ pub(super) enum Part {
     Rivals,
     /// The lists by tiles.
     Tiles,
+    /// The lists in other layouts.
+    Layouts,
 }
 
 /// Which stages' kernels are not those that ship: the first of them have the defect.
@@ -25,9 +30,11 @@ pub(super) fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError
     let lists = differ(sources, native, &["raster", "abuffer"])?.next();
     let rivals = differ(sources, native, &RIVALS)?.next();
     let tiles = differ(sources, native, &["tiles", "linked", "local"])?.next();
-    Ok(match (lists, rivals, tiles) {
-        (None, Some(_), _) => Part::Rivals,
-        (None, None, Some(_)) => Part::Tiles,
+    let layouts = differ(sources, native, &LAYOUTS)?.next();
+    Ok(match (lists, rivals, tiles, layouts) {
+        (None, Some(_), ..) => Part::Rivals,
+        (None, None, Some(_), _) => Part::Tiles,
+        (None, None, None, Some(_)) => Part::Layouts,
         _ => Part::Lists,
     })
 }

@@ -1,0 +1,258 @@
+//! A layout's frame of a whole target, set up once and run many times, each part timed.
+
+use triptych_spec::abuffer::Lists;
+
+use super::arrays::{BEGINS, ENDS};
+use super::room::{Room, Step};
+use super::{Layout, Options, REGIONS, bucket, check, ordered, packed, precalc, regions};
+use crate::abuffer::dispatches;
+use crate::error::GpuError;
+use crate::frame::{Band, WORKGROUP};
+use crate::raster::Rasterizer;
+use crate::timer::Timer;
+
+/// What is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Span {
+    /// Empties lists: packed nodes and runs need none.
+    Clear,
+    /// Builds them.
+    Build,
+    /// Puts them in order, where they are not.
+    Rank,
+    /// The picture.
+    Blend,
+}
+
+/// A whole target that is set up, with room for exactly what there is.
+pub struct Timed<'r, 'g> {
+    room: Room<'r, 'g>,
+    spans: Vec<(Span, Vec<Step>)>,
+    /// Fragments in lists.
+    pub fragments: u32,
+    /// Fragments of the longest.
+    pub longest: u32,
+    /// Nodes that there is room for; of each region, where there are regions.
+    pub capacity: u32,
+}
+
+impl<'r, 'g> Timed<'r, 'g> {
+    /// Sets up a target with one sample a pixel. What was built is certified by `inspect`, which gives the
+    /// length of the longest list.
+    ///
+    /// # Errors
+    /// What does not fit at once, by name; lists that are damaged, as those that do not end; WGSL errors,
+    /// and whatever the device reports.
+    pub fn new(
+        rasterizer: &'r Rasterizer<'g>,
+        layout: Layout,
+        options: Options<'_>,
+        is_opaque: impl Fn(u32) -> bool,
+        inspect: impl Fn(&Lists) -> Option<u32>,
+    ) -> Result<Self, GpuError> {
+        check(rasterizer)?;
+        let band = Band::whole(rasterizer.size);
+        let mut room = Room::new(rasterizer, layout, options, (band, 0), is_opaque)?;
+        let fragments = make(&mut room)?;
+        let mut timed = Self {
+            capacity: room.frame.capacity,
+            room,
+            spans: Vec::new(),
+            fragments,
+            longest: 0,
+        };
+        timed.set_up_build()?;
+        for span in 0..timed.spans.len() {
+            timed.run(span)?;
+        }
+        let lists = read(&timed.room)?;
+        let longest = inspect(&lists).ok_or_else(|| GpuError::Endless {
+            adapter: rasterizer.gpu.name.clone(),
+            stage: layout.name(),
+        })?;
+        timed.longest = longest;
+        timed.set_up_picture()?;
+        // Packed nodes begin with empty lists again.
+        for span in 0..timed.spans.len() {
+            timed.run(span)?;
+        }
+        Ok(timed)
+    }
+
+    fn set_up_build(&mut self) -> Result<(), GpuError> {
+        let room = &self.room;
+        let clear = match room.layout {
+            Layout::Bucket => vec![Step::Other(room.per_pixel("bucket_clear", room.listing)?)],
+            Layout::Regions => vec![Step::Other(room.per_pixel("regions_clear", room.listing)?)],
+            Layout::Ordered => vec![ordered::clear(room)?],
+            // Filling the runs uses their counts up.
+            Layout::Precalc | Layout::Packed => Vec::new(),
+        };
+        let build = match room.layout {
+            Layout::Precalc => {
+                let mut steps = precalc::count(room)?;
+                steps.extend(room.draw("precalc_fill")?);
+                steps
+            }
+            Layout::Ordered => ordered::draw(room)?,
+            layout => room.draw(layout.name())?,
+        };
+        self.spans
+            .extend([(Span::Clear, clear), (Span::Build, build)]);
+        self.spans.retain(|(_, steps)| !steps.is_empty());
+        Ok(())
+    }
+
+    fn set_up_picture(&mut self) -> Result<(), GpuError> {
+        let longest = self.longest;
+        let all = match self.room.layout {
+            Layout::Bucket => self.room.listing.entries.saturating_mul(self.room.pixels()),
+            _ => self.fragments,
+        };
+        let (rank, blend) = match self.room.layout {
+            Layout::Bucket | Layout::Precalc => {
+                let rank = self.room.rank(longest, all)?;
+                (rank, self.room.blend(longest, BEGINS | ENDS)?)
+            }
+            Layout::Packed => (
+                self.until_done("packed", "packed_sort")?,
+                self.until_done("packed", "packed_resolve")?,
+            ),
+            Layout::Regions => (
+                self.until_done("abuffer", "sort")?,
+                self.until_done("abuffer", "resolve")?,
+            ),
+            Layout::Ordered => {
+                let blend = self.room.per_pixel("ordered_blend", self.room.listing)?;
+                (Vec::new(), vec![Step::Other(blend)])
+            }
+        };
+        self.spans
+            .extend([(Span::Rank, rank), (Span::Blend, blend)]);
+        self.spans.retain(|(_, steps)| !steps.is_empty());
+        Ok(())
+    }
+
+    /// As many dispatches as lists of that length may take; those that come after the last do nothing.
+    fn until_done(&self, file: &str, entry: &str) -> Result<Vec<Step>, GpuError> {
+        let room = &self.room;
+        let groups = room.pixels().div_ceil(WORKGROUP);
+        let pass = |file, entry| {
+            room.pass_of(file, entry, room.listing, groups)
+                .map(Step::Other)
+        };
+        let mut steps = vec![pass("nearest", "clear_progress")?];
+        for _ in 0..dispatches(self.longest) {
+            steps.push(pass(file, entry)?);
+        }
+        Ok(steps)
+    }
+
+    /// The parts, in the order in which they run.
+    pub fn spans(&self) -> impl Iterator<Item = Span> {
+        self.spans.iter().map(|(span, _)| *span)
+    }
+
+    /// Bytes of all buffers, but for the triangles.
+    pub fn bytes(&self) -> u64 {
+        self.room.bytes()
+    }
+
+    fn run(&self, span: usize) -> Result<(), GpuError> {
+        self.room.submit(&self.spans[span].1).map(drop)
+    }
+
+    /// Runs every part once, one after another; the lists in order, and the picture.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn frame(&self) -> Result<(Lists, Vec<[f32; 3]>), GpuError> {
+        let blend = self.spans.len() - 1;
+        for span in 0..blend {
+            self.run(span)?;
+        }
+        let lists = read(&self.room)?;
+        self.run(blend)?;
+        Ok((lists, self.room.picture()?))
+    }
+
+    /// Runs every part once, and gives the seconds of each.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError> {
+        let count = u32::try_from(self.spans.len()).expect("a few");
+        let rasterizer = self.room.rasterizer;
+        timer.time(rasterizer.gpu, 0..count, |span, encoder, queries| {
+            let steps = &self.spans[span as usize].1;
+            for (at, step) in steps.iter().enumerate() {
+                let writes = queries.and_then(|q| q.writes(span, at, steps.len()));
+                step.record(rasterizer, encoder, writes);
+            }
+        })
+    }
+}
+
+/// Counts the fragments, and makes room for them.
+fn make(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
+    let gpu = room.rasterizer.gpu;
+    match room.layout {
+        Layout::Bucket => bucket::make_exactly(room),
+        Layout::Precalc => {
+            precalc::make(room)?;
+            room.submit(&precalc::count(room)?)?;
+            let counted = gpu.word(room.get("offsets"), room.pixels())?;
+            room.frame.capacity = counted;
+            room.zeros("listed", 2 * u64::from(counted))?;
+            room.clear("counts", None)?;
+            Ok(counted)
+        }
+        Layout::Packed => {
+            packed::make(room)?;
+            room.submit(&room.draw("packed")?)?;
+            room.frame.capacity = gpu.word(room.get("counter"), 0)?;
+            packed::make(room)?;
+            Ok(room.frame.capacity)
+        }
+        Layout::Regions => {
+            regions::make(room)?;
+            room.submit(&room.draw("regions")?)?;
+            let attempts: Vec<u32> = gpu.read(room.get("counters"), REGIONS as usize)?;
+            room.frame.capacity = attempts.iter().copied().max().unwrap_or(0);
+            regions::make(room)?;
+            let all: u64 = attempts.iter().map(|n| u64::from(*n)).sum();
+            Ok(u32::try_from(all).unwrap_or(u32::MAX))
+        }
+        Layout::Ordered => {
+            ordered::make(room)?;
+            room.submit(&[ordered::clear(room)?])?;
+            room.submit(&ordered::draw(room)?)?;
+            // Without any room each fragment asks once; with room, twice at most.
+            let fragments = gpu.word(room.get("counter"), 0)?;
+            room.frame.capacity = fragments.saturating_mul(2);
+            ordered::make(room)?;
+            Ok(fragments)
+        }
+    }
+}
+
+/// The lists as they are.
+fn read(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
+    let gpu = room.rasterizer.gpu;
+    match room.layout {
+        Layout::Bucket => bucket::lists(room),
+        Layout::Precalc => {
+            let offsets: Vec<u32> = gpu.read(room.get("offsets"), room.pixels() as usize + 1)?;
+            precalc::linked(room, &offsets, room.frame.capacity)
+        }
+        Layout::Packed => packed::lists(room),
+        Layout::Regions => {
+            let attempts: Vec<u32> = gpu.read(room.get("counters"), REGIONS as usize)?;
+            regions::lists(room, &attempts)
+        }
+        Layout::Ordered => {
+            ordered::check_steps(room)?;
+            ordered::lists(room)
+        }
+    }
+}

@@ -1,0 +1,3 @@
+// The kernels of ordered.wgsl for pixels with several samples on the fragment path.
+//#import drawn_samples for drawn
+//#import ordered

@@ -1,0 +1,236 @@
+//! The same lists in other layouts, each against the spec's lists and picture.
+
+use std::collections::BTreeMap;
+
+use triptych_gpu::abuffer::{BandResult, STEPS};
+use triptych_gpu::error::GpuError;
+use triptych_gpu::frame::Band;
+use triptych_gpu::layouts::{Built, Layout, Options, is_wide, run as draw};
+use triptych_gpu::raster::{Path, Rasterizer};
+use triptych_spec::abuffer::{Lists, Sorted};
+use triptych_spec::layouts::packed;
+
+use wgpu::DeviceType;
+
+use super::Extent;
+use super::gpu::{From, GpuLeg};
+use super::rows::Rows;
+use super::tiles::part;
+use crate::compare::lists::{certify, compare_overflowed};
+use crate::compare::{self, Judgement, compare};
+use crate::observe::{Gpu, Observed};
+use crate::row::Class;
+
+/// Most triangles and fragments that a default run has on a software driver.
+const WORK_MAX: u64 = 1 << 17;
+
+/// The same where each fragment goes along its list: steps of all.
+const STEPS_MAX: u64 = 1 << 20;
+
+/// Adds rows for every layout, which starts from the spec's triangles and opaque surfaces.
+///
+/// # Errors
+/// Whatever the device reports.
+pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuError> {
+    let mut rasterizer = None;
+    let mut arrays = Vec::new();
+    for layout in Layout::ALL {
+        if let Some(reason) = reason_not_run(leg, extent, layout) {
+            let label = leg.label();
+            rows.skip(
+                layout.name(),
+                &leg.spec.label,
+                &label,
+                Class::Structure,
+                reason,
+            );
+            continue;
+        }
+        let rasterizer = match &mut rasterizer {
+            Some(rasterizer) => rasterizer,
+            none => none.insert(leg.rasterizer()?),
+        };
+        let seen = leg.layout(layout, rasterizer, rows)?;
+        if matches!(layout, Layout::Bucket | Layout::Precalc) {
+            arrays.push(seen);
+        }
+    }
+    match arrays.is_empty() {
+        true => {
+            let reason = reason_not_run(leg, extent, Layout::Bucket);
+            let reason = reason.unwrap_or_else(|| "there are no arrays".to_owned());
+            rows.skip("rank", &leg.spec.label, &leg.label(), Class::Tie, reason);
+        }
+        false => leg.judge_rank(arrays, rows),
+    }
+    Ok(())
+}
+
+/// Why a layout does not run on a leg; `None` if it does.
+fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, layout: Layout) -> Option<String> {
+    if let Some(planned) = leg.plan.skipped(layout.name()) {
+        return Some(planned);
+    }
+    if leg.from > From::Build {
+        return Some(From::GIVEN.to_owned());
+    }
+    if leg.by_band() {
+        return Some("the driver's sub-pixel grid is unknown".to_owned());
+    }
+    let spec = &leg.spec.value;
+    if layout == Layout::Ordered {
+        let most = steps_of_an_invocation(leg);
+        if most > STEPS {
+            return Some(format!(
+                "plan: an invocation may take {most} steps along lists, more than its {STEPS}"
+            ));
+        }
+    }
+    let is_slow = leg.adapter.gpu.info.device_type == DeviceType::Cpu;
+    let work = (spec.primitives.prims.len() + spec.sorted.fragments.len()) as u64;
+    let is_large = work > WORK_MAX || layout == Layout::Ordered && steps(&spec.sorted) > STEPS_MAX;
+    (extent == Extent::Small && is_slow && is_large)
+        .then(|| "of a scene of its size only if asked for: --rivals".to_owned())
+}
+
+/// Steps of all fragments along their lists.
+fn steps(sorted: &Sorted) -> u64 {
+    let lengths = sorted.offsets.windows(2);
+    lengths.map(|run| u64::from(run[1] - run[0]).pow(2)).sum()
+}
+
+/// The most steps of an invocation along lists that are in order: one for each node, and one where
+/// another invocation was first to hang a node there. On the compute paths it has all of a row of a triangle.
+fn steps_of_an_invocation(leg: &GpuLeg<'_>) -> u64 {
+    let spec = &leg.spec.value;
+    let width = leg.scene.size.width;
+    let mut most = BTreeMap::<(u32, u32), u64>::new();
+    for pixel in 0..spec.sorted.offsets.len() - 1 {
+        let list = spec.sorted.list(pixel);
+        for f in list {
+            let row = match leg.path {
+                Path::Fragment => f.pixel,
+                Path::Compute | Path::Native => f.pixel / width,
+            };
+            *most.entry((f.prim, row)).or_default() += 2 * list.len() as u64;
+        }
+    }
+    most.into_values().max().unwrap_or(0)
+}
+
+impl GpuLeg<'_> {
+    /// Runs a layout, and compares its lists. Where arrays are put in order, that is another stage.
+    fn layout(
+        &self,
+        layout: Layout,
+        rasterizer: &Rasterizer<'_>,
+        rows: &mut Rows,
+    ) -> Result<Observed<Gpu, Built>, GpuError> {
+        let own = &self.spec.value;
+        let options = Options {
+            opaque: &own.opaque,
+            depth_test: self.plan.depth_test,
+            background: self.scene.background,
+            capacity: self.capacity,
+            arrays: None,
+        };
+        let inspect = |lists: &Lists| certify(lists).longest();
+        let is_opaque = |prim| own.is_opaque(prim);
+        let seen = draw(rasterizer, layout, options, is_opaque, inspect)?;
+        let note = note(layout, &seen, rasterizer);
+        let time = seen.build;
+        let seen = Observed::<Gpu, Built>::new(self.label(), seen).taking(time);
+        let spec = self.spec.derive(&own.sorted).taking(own.times.build);
+        let mut judgement = compare(&spec, &seen, |sorted, built| {
+            self.lists(layout, sorted, built)
+        });
+        if judgement.differ() == 0 {
+            judgement.note = note;
+        }
+        rows.add(layout.name(), &spec, &seen, judgement);
+        Ok(seen)
+    }
+
+    /// The lists as they were built; for what has no stage of its own, also their order and the picture.
+    fn lists(&self, layout: Layout, sorted: &Sorted, built: &Built) -> Judgement {
+        let whole = |band: Band, lists: &Lists| {
+            compare::lists::compare(&self.expected(sorted, band), lists)
+        };
+        let bands = built.bands.iter().map(|b| whole(b.band, &b.built));
+        let again = built.again.iter().map(|(band, lists)| whole(*band, lists));
+        let overflowed = built.overflowed.iter().map(|(band, lists)| {
+            let enough = fragments(sorted, *band, self.scene.size.width);
+            compare_overflowed(&self.expected(sorted, *band), lists, enough)
+        });
+        let mut all = Judgement::sum(bands.chain(again).chain(overflowed));
+        compare::passes::judge(&built.passes, &mut all);
+        // What follows from other lists says nothing.
+        if all.differ() == 0 && !matches!(layout, Layout::Bucket | Layout::Precalc) {
+            all = Judgement::sum([all, self.finished(layout, built)]);
+        }
+        all
+    }
+
+    /// Order and picture.
+    fn finished(&self, layout: Layout, built: &Built) -> Judgement {
+        let own = &self.spec.value;
+        let width = self.scene.size.width;
+        let ordered = |b: &BandResult| {
+            let sorted = b.sorted.as_ref()?;
+            let must = part(&own.sorted, b, width);
+            Some(compare::order::compare(&must, sorted, width))
+        };
+        let ordered = built.bands.iter().filter_map(ordered);
+        let all = Judgement::sum(ordered);
+        if self.scene.samples.count() > 1 {
+            return all;
+        }
+        let picture = match layout {
+            Layout::Packed => {
+                let must = packed(self.scene, &own.primitives, &own.opaque, &own.sorted);
+                compare::image::compare(&must, &built.image, width)
+            }
+            _ => compare::image::compare(&own.image, &built.image, width),
+        };
+        Judgement::sum([all, picture])
+    }
+
+    /// Arrays in order, and the pictures that they give.
+    fn judge_rank(&self, arrays: Vec<Observed<Gpu, Built>>, rows: &mut Rows) {
+        let time = arrays.iter().map(|a| a.value.finish).sum();
+        let arrays: Vec<Built> = arrays.into_iter().map(|a| a.value).collect();
+        let seen = Observed::<Gpu, _>::new(self.label(), arrays).taking(time);
+        let times = self.spec.value.times;
+        let spec = self.spec.derive(()).taking(times.sort + times.resolve);
+        let judgement = compare(&spec, &seen, |(), arrays| {
+            let all = |built: &Built| self.finished(Layout::Bucket, built);
+            Judgement::sum(arrays.iter().map(all))
+        });
+        rows.add("rank", &spec, &seen, judgement);
+    }
+}
+
+/// Fragments of a band.
+fn fragments(sorted: &Sorted, band: Band, width: u32) -> u64 {
+    let [first, end] = [band.first, band.first + band.rows].map(|row| (row * width) as usize);
+    u64::from(sorted.offsets[end] - sorted.offsets[first])
+}
+
+/// What is worth knowing of lists that agree.
+fn note(layout: Layout, built: &Built, rasterizer: &Rasterizer<'_>) -> String {
+    match layout {
+        Layout::Bucket => format!(
+            "{} entries a pixel, {} ranges of depth",
+            built.entries, built.ranges
+        ),
+        Layout::Packed if !built.again.is_empty() => {
+            "two frames, the second without clearing".to_owned()
+        }
+        Layout::Ordered if is_wide(rasterizer) => "one pass over the triangles".to_owned(),
+        Layout::Ordered if rasterizer.path == Path::Native => {
+            "two passes over the triangles: no 64-bit atomics".to_owned()
+        }
+        Layout::Ordered => "two passes over the triangles".to_owned(),
+        _ => String::new(),
+    }
+}
