@@ -6,10 +6,12 @@ mod adapters;
 use std::ops::Range;
 
 use proptest::prelude::*;
-use triptych_spec::abuffer::{NOTHING, Opaque, build, opaque, resolve, sort};
+use triptych_spec::abuffer::{EOL, NOTHING, Opaque, build, opaque, resolve, sort};
 use triptych_spec::raster::{Fragment, Samples, Setup, cover, sample};
 use triptych_spec::scene::Size;
-use triptych_spec::tiles::{Bins, Jagged, LISTS, ROWS, SIDE, bin, jagged, shade, sorted};
+use triptych_spec::tiles::{
+    Bins, Jagged, LISTS, ROWS, SIDE, bin, digest, jagged, linked, local, shade, sorted,
+};
 use triptych_spec::vertex::Primitives;
 
 use super::abuffer::{Layers, coloured, painted};
@@ -127,6 +129,43 @@ proptest! {
             shade(scene, primitives, &surfaces, (&bins, &own)),
             resolve(scene, primitives, &surfaces, &must)
         );
+    }
+
+    /// A tile's counter counts all of its fragments, and as many nodes are stored as there is room for;
+    /// with room for all, the lists are those of stage build, and so is what is left of them.
+    #[test]
+    fn tiles_have_counters_of_their_own(layers in coloured(soup(1..24)), capacity in 0_u32..96) {
+        let Layers { scene, primitives } = &layers;
+        let surfaces = opaque(scene, primitives);
+        let own = jagged(primitives, &surfaces, false, &whole(&layers));
+        let count = |tile: usize| {
+            let lists = &own.lists[tile * LISTS as usize..(tile + 1) * LISTS as usize];
+            lists.iter().map(|list| list.length).sum::<u32>()
+        };
+        let few = linked(scene, primitives, (&surfaces, false), capacity);
+        for (tile, attempts) in few.attempts.iter().enumerate() {
+            prop_assert_eq!(*attempts, count(tile));
+            let first = tile * capacity as usize;
+            let region = &few.nodes[first..first + capacity as usize];
+            let stored = region.iter().flatten().count();
+            prop_assert_eq!(stored, capacity.min(*attempts) as usize);
+        }
+        let most = few.attempts.iter().max().copied().unwrap_or(0);
+        let all = linked(scene, primitives, (&surfaces, false), most);
+        let must = sort(&build(scene, primitives, &surfaces, false, u32::MAX));
+        for (pixel, left) in local(&must).into_iter().enumerate() {
+            let mut list = Vec::new();
+            let mut at = all.heads[pixel];
+            while at != EOL {
+                let node = all.nodes[at as usize].expect("what is linked is stored");
+                list.push([node.key, node.prim]);
+                at = node.next;
+            }
+            list.sort_unstable();
+            prop_assert_eq!(digest(list.iter().copied()), left);
+            let reversed = digest(list.iter().rev().copied());
+            prop_assert_eq!(reversed == left, list.len() < 2, "the order matters");
+        }
     }
 
     /// Every entry is in one list, and each row of a tile lies behind the one before it.

@@ -1,9 +1,10 @@
 //! Tiles on every adapter: what a run of few triangles cannot show.
 
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_gpu::tiles::{Options, run};
+use triptych_gpu::tiles::{Options, run, run_linked, run_local};
 use triptych_harness::compare::order::flatten;
 use triptych_spec::abuffer::{build, opaque, sort};
+use triptych_spec::tiles::local;
 
 use super::stack;
 use crate::adapters::devices;
@@ -39,6 +40,13 @@ fn dispatches_go_on_where_the_last_one_stopped() {
                 let words = format!("{}, {depth} layers, {drawn} at once", gpu.name);
                 assert_eq!(lists.as_ref(), Some(&must), "{words}");
                 assert_eq!(seen.image.len(), 81, "{words}");
+                let left = run_local(&rasterizer, options).expect("it runs");
+                assert_eq!(left.digests, local(&must), "{words}");
+                assert_eq!(left.image, seen.image, "{words}");
+                let nodes = run_linked(&rasterizer, options, |_| Some(depth)).expect("it runs");
+                let lists = nodes.bands[0].sorted.as_ref().and_then(flatten);
+                assert_eq!(lists.as_ref(), Some(&must), "{words}");
+                assert_eq!(nodes.image, seen.image, "{words}");
             }
         }
     }
