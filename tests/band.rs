@@ -33,7 +33,7 @@ fn is_coarse(adapter: &Adapter) -> bool {
 /// grid and given these kernels.
 fn rows(scene: &str, coarse: bool, grid: Grid, sources: &Sources) -> Vec<Row> {
     let mut adapters: Lent<'_> = DEVICES.take().expect("adapters");
-    adapters.spoil(); // of these, the grid is a lie
+    adapters.spoil(true); // of these, the grid will be a lie
     let adapter = adapters.iter_mut().find(|a| is_coarse(a) == coarse);
     let adapter = adapter.expect("a driver of that grid: ./x setup installs one of each");
     adapter.grid = grid;

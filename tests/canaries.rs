@@ -20,13 +20,15 @@ use triptych_harness::mutants::{Cell, Columns, Lab, Mutant, by_mutant, legs, mut
 use triptych_harness::replay::{Options, replay};
 
 fn main() -> ExitCode {
-    let arguments = Arguments::from_args();
+    let mut arguments = Arguments::from_args();
+    // Most of them wait for a lab, whichever is free.
+    arguments.test_threads.get_or_insert(WAITING);
     let cage = Arc::new(Cage {
-        state: Mutex::default(),
+        labs: Default::default(),
         order: mutants().into_iter().map(|m| m.name).zip(0..).collect(),
     });
     let mut trials = Vec::new();
-    for mutant in mutants() {
+    for mutant in by_turns(mutants()) {
         let cage = cage.clone();
         let cause = mutant.cause.map_or_else(|| "mutant".into(), Cause::name);
         let name = format!("{cause}/{}", mutant.name);
@@ -51,13 +53,37 @@ fn main() -> ExitCode {
     conclusion.exit_code()
 }
 
-/// The devices, opened when first asked for, and what came of the mutants so far.
+/// Tests that wait or run at once: so many that seldom all of them wait for one lab.
+const WAITING: usize = 8;
+
+/// Mutants as they are listed, but those of one lab and of the other by turns.
+fn by_turns(all: Vec<Mutant>) -> Vec<Mutant> {
+    let (drawn, others): (Vec<_>, Vec<_>) = all.into_iter().partition(is_drawn);
+    let [a, b] = [drawn.len(), others.len()];
+    let place = |of: usize| move |(i, mutant)| ((2 * i + 1) * (a + b - of), mutant);
+    let drawn = drawn.into_iter().enumerate().map(place(a));
+    let mut all: Vec<_> = drawn
+        .chain(others.into_iter().enumerate().map(place(b)))
+        .collect();
+    all.sort_by_key(|(place, _)| *place);
+    all.into_iter().map(|(_, mutant)| mutant).collect()
+}
+
+/// Whether it is run on a scene of triangles alone.
+fn is_drawn(mutant: &Mutant) -> bool {
+    let of = |family| mutant.scene.starts_with(family);
+    !["grid/", "rsm/", "ldm/"].into_iter().any(of)
+}
+
+/// Two labs: a driver compiles on one core, and most of the time is that. Their scenes have
+/// few kernels in common, so little is compiled twice.
 struct Cage {
-    state: Mutex<State>,
+    labs: [Mutex<State>; 2],
     /// Where mutants stand in the table.
     order: BTreeMap<String, usize>,
 }
 
+/// The devices, opened when first asked for, and what came of the mutants so far.
 #[derive(Default)]
 struct State {
     lab: Option<Lab>,
@@ -66,12 +92,14 @@ struct State {
 }
 
 impl Cage {
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    fn state(&self, lab: usize) -> MutexGuard<'_, State> {
+        self.labs[lab]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     fn kill(&self, mutant: &Mutant) -> Result<(), Failed> {
-        let mut state = self.state();
+        let mut state = self.state(usize::from(!is_drawn(mutant)));
         let start = Instant::now();
         let mut lab = match state.lab.take() {
             Some(lab) => lab,
@@ -88,14 +116,15 @@ impl Cage {
 
     /// The kill matrix.
     fn print(&self) {
-        let State { cells, time, .. } = &*self.state();
+        let states = [self.state(0), self.state(1)];
+        let cells: Vec<Cell> = states.iter().flat_map(|s| s.cells.clone()).collect();
         if cells.is_empty() {
             return;
         }
-        let mut rows: Vec<_> = by_mutant(cells);
+        let mut rows: Vec<_> = by_mutant(&cells);
         rows.sort_by_key(|(name, _)| self.order[*name]);
         let names = cells.iter().map(|c| (c.mutant.as_str(), c.scene.as_str()));
-        let legs: Vec<String> = legs(cells).into_iter().map(str::to_owned).collect();
+        let legs: Vec<String> = legs(&cells).into_iter().map(str::to_owned).collect();
         let columns = Columns::new(&legs, names);
         for line in columns.header() {
             println!("{line}");
@@ -103,7 +132,11 @@ impl Cage {
         for (_, cells) in &rows {
             println!("{}", columns.line(cells));
         }
-        println!("{} mutants in {:.1} s\n", rows.len(), time.as_secs_f64());
+        let times: Vec<String> = states
+            .iter()
+            .map(|s| format!("{:.1} s", s.time.as_secs_f64()))
+            .collect();
+        println!("{} mutants in {}\n", rows.len(), times.join(" and "));
     }
 }
 

@@ -4,6 +4,7 @@
 use std::ops::{Deref, DerefMut};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+use triptych_harness::calibrate::Grid;
 use triptych_harness::replay::gpu::Adapter;
 
 #[path = "adapters.rs"]
@@ -33,6 +34,8 @@ pub struct Lent<'a> {
     from: &'a Devices,
     set: Vec<Adapter>,
     spoilt: bool,
+    /// The grids as they were found, of a set that is mended.
+    changed: Option<Vec<Grid>>,
 }
 
 impl Devices {
@@ -55,6 +58,7 @@ impl Devices {
             from: self,
             set: Vec::new(),
             spoilt: true,
+            changed: None,
         };
         lent.set = match idle {
             Some(set) => set,
@@ -70,15 +74,21 @@ impl Devices {
 }
 
 impl Lent<'_> {
-    /// A device is lost or in doubt: no other test gets this set.
-    pub fn spoil(&mut self) {
-        self.spoilt = true;
+    /// What is lent is not what was opened any more. No other test gets this set; or, if that
+    /// `mends` it, one with kernels and grids as they were.
+    pub fn spoil(&mut self, mends: bool) {
+        self.spoilt = !mends;
+        self.changed = mends.then(|| self.set.iter().map(|a| a.grid).collect());
     }
 }
 
 impl Drop for Lent<'_> {
     fn drop(&mut self) {
-        let set = std::mem::take(&mut self.set);
+        let mut set = std::mem::take(&mut self.set);
+        for (adapter, grid) in set.iter_mut().zip(self.changed.take().unwrap_or_default()) {
+            adapter.grid = grid;
+            adapter.use_shipped();
+        }
         let mut state = self.from.state();
         state.lent -= 1;
         if !self.spoilt && !std::thread::panicking() {

@@ -149,7 +149,7 @@ fn from_every_stage_on_all_agrees() {
 #[test]
 fn later_stages_start_from_the_triangles_of_the_gpu() {
     let mut adapters = DEVICES.take().expect("adapters");
-    adapters.spoil();
+    adapters.spoil(true);
     let [_, scene, file, find, replace] = DEFECTS[1];
     let patched = Sources::shipped(false).patched(file, find, replace);
     let patched = patched.expect("the kernel has this text once");
@@ -222,7 +222,7 @@ fn around(stage: &str) -> impl Iterator<Item = From> {
 #[test]
 fn a_defect_shows_until_it_is_passed() {
     let mut adapters = DEVICES.take().expect("adapters");
-    adapters.spoil();
+    adapters.spoil(true);
     for [stage, scene, file, find, replace] in DEFECTS {
         let patched = Sources::shipped(false).patched(file, find, replace);
         let patched = patched.expect("the kernel has this text once");

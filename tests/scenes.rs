@@ -105,7 +105,7 @@ fn test(entry: &Entry, devices: &Devices) -> Result<(), Failed> {
     }
     let mut wrong = judge(&outcome, &adapters);
     if !wrong.is_empty() {
-        adapters.spoil();
+        adapters.spoil(false);
     }
     drop(adapters);
     // insta prints the difference before it panics.

@@ -94,7 +94,7 @@ fn a_defect_of_the_vertex_stages_has_cause_vertex_on_every_path() {
     ];
     for (stage, find, replace) in defects {
         let mut adapters = DEVICES.take().expect("adapters");
-        adapters.spoil();
+        adapters.spoil(true);
         patch(&mut adapters, "vertex", find, &replace);
         let rows = rows("raster/near-plane", &adapters, Vertices::Gpu);
         for leg in legs(&adapters) {
@@ -162,7 +162,7 @@ fn defects_of_clip_space_are_outside_the_band() {
     ];
     for (scene, position) in defects {
         let mut adapters = DEVICES.take().expect("adapters");
-        adapters.spoil();
+        adapters.spoil(true);
         patch(&mut adapters, "place", find, &placed(position));
         let rows = rows(scene, &adapters, Vertices::Hardware);
         for adapter in adapters.iter() {

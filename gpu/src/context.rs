@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use triptych_spec::raster::Samples;
 
 use crate::error::GpuError;
-use crate::kernel::TARGET_FORMAT;
+use crate::kernel::{Made, TARGET_FORMAT};
 
 /// What a device has beyond WebGPU's defaults, if its adapter does: 64-bit integers for
 /// path `native`, with atomics of these and blending of 32-bit floats for rivals of lists,
@@ -57,6 +57,8 @@ pub struct Gpu {
     samples: Vec<u32>,
     /// Bytes in all that are as good as there, for tests.
     memory_limit: Option<u64>,
+    /// Pipelines, whosever sources they come from.
+    pub(crate) made: Made,
     /// The first thing that went wrong behind our back.
     failure: Arc<Mutex<Option<GpuError>>>,
 }
@@ -106,6 +108,7 @@ impl Gpu {
             device,
             queue,
             memory_limit: None,
+            made: Made::default(),
             failure,
         })
     }

@@ -3,7 +3,9 @@
 mod blending;
 mod foreign;
 mod layout;
+mod made;
 mod module;
+mod pipeline;
 mod skeleton;
 mod stage;
 mod stages;
@@ -13,32 +15,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::context::Gpu;
 use crate::error::GpuError;
-use crate::pass::Uses;
 use crate::wgsl::{Sources, WgslError};
+pub(crate) use made::Made;
+use made::{Recipe, State};
 use module::{Checks, Module, bindings, uses};
 
 pub use foreign::Foreign;
+pub use pipeline::{Kernel, Pipeline};
 pub use skeleton::skeleton;
 pub use stage::Stage;
 pub use stages::STAGES;
-
-/// A pipeline and the variables that it uses.
-pub struct Kernel {
-    /// Compute or render.
-    pub pipeline: Pipeline,
-    /// Variable name and binding number, both stages of a render pipeline together.
-    bindings: Vec<(String, u32)>,
-    /// What it does to plain data.
-    pub uses: Arc<Uses>,
-}
-
-/// The two kinds of pipeline.
-pub enum Pipeline {
-    /// One entry point.
-    Compute(wgpu::ComputePipeline),
-    /// A vertex and a fragment entry point, without colour writes.
-    Render(wgpu::RenderPipeline),
-}
 
 /// Format of the target that fragment-stage kernels run over. They never write
 /// it: llvmpipe drops side effects of fragments that a later opaque write covers.
@@ -56,9 +42,9 @@ pub enum Fault {
     ColourWritten,
 }
 
-/// By file, vertex entry point (none of a compute kernel's), entry point, and samples of a pixel
-/// of its target (none of a compute kernel's).
-type Built = BTreeMap<(String, [String; 2], u32), Arc<Kernel>>;
+/// By file; vertex entry point (none of a compute kernel's), entry point and targets that it blends
+/// into, if any; and samples of a pixel of its target (none of a compute kernel's).
+type Built = BTreeMap<(String, [String; 3], u32), Arc<Kernel>>;
 
 /// The kernels of one device, compiled when first asked for.
 pub struct Kernels {
@@ -155,7 +141,7 @@ impl Kernels {
     /// # Errors
     /// WGSL errors at their place; what the device refuses.
     pub fn compute(&self, gpu: &Gpu, file: &str, entry: &str) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, (["", entry], 0), |ours, module| {
+        self.get(gpu, file, (["", entry, ""], 0), |_, module| {
             let pipeline = gpu
                 .device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -170,11 +156,7 @@ impl Kernels {
                     },
                     cache: None,
                 });
-            Ok(Kernel {
-                pipeline: Pipeline::Compute(pipeline),
-                bindings: bindings(ours, [(module, entry)]),
-                uses: uses([(module, entry)]),
-            })
+            Pipeline::Compute(pipeline)
         })
     }
 
@@ -190,12 +172,11 @@ impl Kernels {
         [place, entry]: [&str; 2],
         samples: u32,
     ) -> Result<Arc<Kernel>, GpuError> {
-        self.get(gpu, file, ([place, entry], samples), |ours, module| {
-            let returns = self.fault == Some(Fault::ColourWritten) && module.program.returns(entry);
+        self.get(gpu, file, ([place, entry, ""], samples), |ours, module| {
             let target = wgpu::ColorTargetState {
                 format: TARGET_FORMAT,
                 blend: None,
-                write_mask: match returns {
+                write_mask: match self.writes_colour(module, entry) {
                     true => wgpu::ColorWrites::ALL,
                     false => wgpu::ColorWrites::empty(),
                 },
@@ -226,11 +207,7 @@ impl Kernels {
                     multiview_mask: None,
                     cache: None,
                 });
-            Ok(Kernel {
-                pipeline: Pipeline::Render(pipeline),
-                bindings: bindings(ours, [(ours, place), (module, entry)]),
-                uses: uses([(ours, place), (module, entry)]),
-            })
+            Pipeline::Render(pipeline)
         })
     }
 
@@ -238,11 +215,12 @@ impl Kernels {
         &self,
         gpu: &Gpu,
         file: &str,
-        ([place, entry], samples): ([&str; 2], u32),
-        make: impl FnOnce(&Module, &Module) -> Result<Kernel, GpuError>,
+        ([place, entry, into], samples): ([&str; 3], u32),
+        make: impl FnOnce(&Module, &Module) -> Pipeline,
     ) -> Result<Arc<Kernel>, GpuError> {
         let mut kernels = self.kernels();
-        let key = (file.to_owned(), [place, entry].map(str::to_owned), samples);
+        let names = [place, entry, into].map(str::to_owned);
+        let key = (file.to_owned(), names, samples);
         if let Some(kernel) = kernels.get(&key) {
             return Ok(kernel.clone());
         }
@@ -251,10 +229,38 @@ impl Kernels {
             Some(foreign) => self.module(gpu, foreign)?,
             None => ours.clone(),
         };
-        let kernel = Arc::new(make(&ours, &module)?);
-        gpu.check()?;
+        let both = [(&*ours, place), (&*module, entry)];
+        let entries = if place.is_empty() { &both[1..] } else { &both };
+        let bindings = bindings(&ours, entries);
+        let state = State {
+            samples,
+            checks: self.checks,
+            colour: self.writes_colour(&module, entry),
+            into: into.to_owned(),
+        };
+        let recipe = Recipe::new(entries, &bindings, state);
+        let known = recipe.as_ref().and_then(|recipe| gpu.made.find(recipe));
+        let kernel = match known {
+            Some(kernel) => kernel,
+            None => {
+                let kernel = Arc::new(Kernel {
+                    pipeline: make(&ours, &module),
+                    bindings,
+                    uses: uses(entries),
+                });
+                gpu.check()?;
+                if let Some(recipe) = recipe {
+                    gpu.made.keep(recipe, &kernel);
+                }
+                kernel
+            }
+        };
         kernels.insert(key, kernel.clone());
         Ok(kernel)
+    }
+
+    fn writes_colour(&self, module: &Module, entry: &str) -> bool {
+        self.fault == Some(Fault::ColourWritten) && module.program.returns(entry)
     }
 
     fn module(&self, gpu: &Gpu, file: &str) -> Result<Arc<Module>, GpuError> {
@@ -265,34 +271,5 @@ impl Kernels {
         let module = Arc::new(Module::new(gpu, &self.sources, file, self.checks)?);
         programs.insert(file.to_owned(), module.clone());
         Ok(module)
-    }
-}
-
-impl Kernel {
-    /// Binds the variables that the kernel uses to the buffers of those names.
-    ///
-    /// # Panics
-    /// If a variable has no buffer: a kernel and its host code belong together.
-    pub fn bind(&self, gpu: &Gpu, buffers: &[(&str, &wgpu::Buffer)]) -> wgpu::BindGroup {
-        let entry = |(name, binding): &(String, u32)| {
-            let buffer = buffers.iter().find(|(given, _)| given == name);
-            wgpu::BindGroupEntry {
-                binding: *binding,
-                resource: buffer
-                    .unwrap_or_else(|| panic!("no buffer for the variable {name}"))
-                    .1
-                    .as_entire_binding(),
-            }
-        };
-        let entries: Vec<_> = self.bindings.iter().map(entry).collect();
-        let layout = match &self.pipeline {
-            Pipeline::Compute(p) => p.get_bind_group_layout(0),
-            Pipeline::Render(p) => p.get_bind_group_layout(0),
-        };
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &layout,
-            entries: &entries,
-        })
     }
 }

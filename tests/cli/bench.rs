@@ -74,7 +74,7 @@ fn results_are_written_and_sound() {
         assert!(text.contains(part), "{part} in {text}");
     }
     // The report of a replay shows it.
-    place.run(&["replay", "--leg", "gpu", "deep"]).expect(0);
+    place.run(&["replay", "--leg", "spec", "deep"]).expect(0);
     let report = read(place.root.join("reports/out/index.html"));
     assert!(report.contains("class=\"front\""), "the front is shown");
 }
@@ -106,10 +106,9 @@ fn a_wrong_kernel_is_named_and_not_timed() {
     place.write("corpus/abuffer/deep/scene.toml", &deep());
     let example = repository().join("harness/examples/first-k/build.wgsl");
     let kernel = format!("build={}", example.display());
-    let command = [
-        "bench", "abuffer", "deep", "--runs", "1", "--kernel", &kernel,
-    ];
-    let ran = place.run(&command).expect(1);
+    let command = ["bench", "abuffer", "deep", "--runs", "1"];
+    let on = |kernel| [&command[..], &["--adapter", "llvmpipe", "--kernel", kernel]].concat();
+    let ran = place.run(&on(&kernel)).expect(1);
     let wrong = "triptych: abuffer/deep: gpu@llvmpipe/compute";
     assert!(ran.stderr.contains(wrong), "{}", ran.stderr);
     assert!(
@@ -121,14 +120,11 @@ fn a_wrong_kernel_is_named_and_not_timed() {
     let text = "//#import abuffer\n";
     place.write("mine.wgsl", text);
     let kernel = "build=mine.wgsl";
-    let command = [
-        "bench", "abuffer", "deep", "--runs", "1", "--kernel", kernel,
-    ];
-    place.run(&command).expect(0);
+    place.run(&on(kernel)).expect(0);
     let dark = fs::read_to_string(repository().join("gpu/src/abuffer.wgsl")).expect("ours");
     let dark = dark.replace("colours[address] = faces", "colours[address] = 0.5 * faces");
     place.write("mine.wgsl", &dark);
-    let ran = place.run(&command).expect(1);
+    let ran = place.run(&on(kernel)).expect(1);
     let first = ran.stderr.lines().find(|l| l.contains("llvmpipe/compute"));
     let first = first.unwrap_or_else(|| panic!("{}", ran.stderr));
     for part in [

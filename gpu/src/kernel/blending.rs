@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use super::module::{bindings, uses};
 use super::{Kernel, Kernels, Pipeline};
 use crate::context::Gpu;
 use crate::error::GpuError;
@@ -21,10 +20,9 @@ impl Kernels {
         [place, entry]: [&str; 2],
         targets: &[wgpu::ColorTargetState],
     ) -> Result<Arc<Kernel>, GpuError> {
-        let formats: Vec<_> = targets.iter().map(|t| t.format).collect();
-        let place_into = format!("{place} {formats:?}");
+        let into = format!("{targets:?}");
         let targets: Vec<_> = targets.iter().cloned().map(Some).collect();
-        self.get(gpu, file, ([&place_into, entry], 1), |ours, module| {
+        self.get(gpu, file, ([place, entry, &into], 1), |ours, module| {
             let descriptor = wgpu::RenderPipelineDescriptor {
                 label: Some(entry),
                 layout: None,
@@ -46,11 +44,7 @@ impl Kernels {
                 multiview_mask: None,
                 cache: None,
             };
-            Ok(Kernel {
-                pipeline: Pipeline::Render(gpu.device.create_render_pipeline(&descriptor)),
-                bindings: bindings(ours, [(ours, place), (module, entry)]),
-                uses: uses([(ours, place), (module, entry)]),
-            })
+            Pipeline::Render(gpu.device.create_render_pipeline(&descriptor))
         })
     }
 }

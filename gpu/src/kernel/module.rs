@@ -14,7 +14,7 @@ pub(super) struct Module {
 }
 
 /// Whether naga adds bounds checks and ends loops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Checks {
     /// As WebGPU wants it: whatever a kernel does is defined.
     Kept,
@@ -61,10 +61,7 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
 
 /// What entry points bind, by the names that our file gives the numbers: the host knows
 /// no others.
-pub(super) fn bindings<const N: usize>(
-    ours: &Module,
-    entries: [(&Module, &str); N],
-) -> Vec<(String, u32)> {
+pub(super) fn bindings(ours: &Module, entries: &[(&Module, &str)]) -> Vec<(String, u32)> {
     let names = ours.program.names();
     let used = |(module, entry): &(&Module, &str)| module.program.bindings(entry);
     let numbers = entries.iter().filter_map(used).flatten().map(|b| b.1);
@@ -76,7 +73,7 @@ pub(super) fn bindings<const N: usize>(
 }
 
 /// What entry points do to plain data together.
-pub(super) fn uses<const N: usize>(entries: [(&Module, &str); N]) -> Arc<Uses> {
+pub(super) fn uses(entries: &[(&Module, &str)]) -> Arc<Uses> {
     let mut all = Uses::default();
     for (module, entry) in entries {
         let Uses { reads, writes } = Uses::of(&module.program, &[entry]);

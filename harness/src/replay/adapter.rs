@@ -137,6 +137,15 @@ impl Adapter {
         format!("gpu@{}/{}", self.gpu.name, path.name())
     }
 
+    /// Runs the kernels that ship, whatever it ran before.
+    pub fn use_shipped(&mut self) {
+        self.kernels = Kernels::new(Sources::shipped(false));
+        let native = || Kernels::new(native(&self.gpu));
+        self.native = self.gpu.has_int64().then(native);
+        self.calibrated = Calibrated::default();
+        self.foreign.clear();
+    }
+
     /// Runs a user's kernels from now on, in place of ours of the same stages.
     /// Calibration was done with ours.
     pub fn use_foreign(&mut self, foreign: &[Foreign]) {
