@@ -51,35 +51,35 @@ const DEFECTS: [[&str; 5]; 8] = [
     ],
     [
         "cover",
-        "abuffer/mixed",
+        "abuffer/lens",
         "raster",
         "append(walk.fragment);",
         "walk.fragment.mask = 3u; append(walk.fragment);",
     ],
     [
         "opaque",
-        "abuffer/mixed",
+        "abuffer/lens",
         "abuffer",
         "nearest(walk.fragment);",
         "walk.fragment.key += 1u; nearest(walk.fragment);",
     ],
     [
         "build",
-        "abuffer/mixed",
+        "abuffer/lens",
         "abuffer",
         "colours[address] = faces[fragment.prim]",
         "colours[address] = faces[fragment.prim].bgra",
     ],
     [
         "sort",
-        "abuffer/mixed",
+        "abuffer/lens",
         "abuffer",
         "x.key < y.key || (x.key == y.key && x.prim < y.prim)",
         "x.key > y.key || (x.key == y.key && x.prim < y.prim)",
     ],
     [
         "resolve",
-        "abuffer/mixed",
+        "abuffer/lens",
         "abuffer",
         "seen.a * (1.0 - layer.a)",
         "seen.a",
@@ -117,7 +117,7 @@ fn every_stage_can_be_the_first() {
 #[test]
 fn from_every_stage_on_all_agrees() {
     let adapters = DEVICES.take().expect("adapters");
-    for scene in ["raster/near-plane", "abuffer/mixed"] {
+    for scene in ["raster/near-plane", "abuffer/lens"] {
         for from in From::all() {
             let rows = rows(scene, &adapters, *from, &Options::default().paths);
             let at = format!("{scene} from {}", from.name());
@@ -172,7 +172,7 @@ fn later_stages_start_from_the_triangles_of_the_gpu() {
 #[test]
 fn the_stages_before_do_not_run() {
     let adapters = DEVICES.take().expect("adapters");
-    let scene = load_entry(&entry("abuffer/mixed"), None).expect("it loads");
+    let scene = load_entry(&entry("abuffer/lens"), None).expect("it loads");
     let (scene, plan) = (&scene.scene, Plan::new(&scene.scene, true));
     let snapped = primitives(scene, SUBPIXEL_BITS);
     let run = SpecRun::new(scene, snapped, &plan).expect("a small scene");
