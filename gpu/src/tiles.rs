@@ -7,6 +7,7 @@ mod attempt;
 mod linked;
 mod lists;
 mod local;
+mod nodes;
 mod room;
 mod rows;
 mod timed;

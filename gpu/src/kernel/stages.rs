@@ -4,35 +4,15 @@
 mod layouts;
 mod rivals;
 mod tiles;
+mod vertex;
 
 use super::Stage;
 
 /// Every stage, in the order in which they run.
 pub const STAGES: [Stage; 44] = [
-    Stage {
-        name: "transform",
-        file: "vertex",
-        compute: &["transform"],
-        fragment: &[],
-        contract: "positions[frame.work_first + i] is the product of the vertex and the four \
-            rows of its instance's matrix, for i below frame.items.",
-    },
-    Stage {
-        name: "clip",
-        file: "vertex",
-        compute: &["clip"],
-        fragment: &[],
-        contract: "Cuts triangle i of frame.items at the depth range and the guard rectangle; \
-            counts[i] corners go to polygons[9 i ..].",
-    },
-    Stage {
-        name: "snap",
-        file: "vertex",
-        compute: &["snap"],
-        fragment: &[],
-        contract: "Rounds the counts[i] corners of polygon i to the grid of frame.bits; three \
-            numbers each, from snapped[3 offsets[i]].",
-    },
+    vertex::TRANSFORM,
+    vertex::CLIP,
+    vertex::SNAP,
     Stage {
         name: "cover",
         file: "raster",

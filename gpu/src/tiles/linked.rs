@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
-use triptych_spec::abuffer::{EOL, Lists, Node};
+use triptych_spec::abuffer::Lists;
 
 use super::attempt::{self, Tried};
 use super::lists::STEPS;
+use super::nodes;
 use super::room::Room;
 use super::{DRAWN, Options, Tiled};
 use crate::abuffer::{BandResult, PROGRESS, dispatches};
@@ -137,7 +138,7 @@ fn of_band(
         overflowed = u32::try_from(full).expect("fewer than 2^32 tiles");
         regions = placed(counted.iter().map(|r| r.attempts));
     }
-    let built = lists(&room, band, &regions)?;
+    let built = nodes::lists(&room, band, &regions)?;
     let mut linked = Linked {
         overflowed,
         ..Linked::default()
@@ -149,7 +150,7 @@ fn of_band(
     };
     if let Some(longest) = inspect(&result.built) {
         time += until_done(&room, room.sort_linked()?, dispatches(longest))?;
-        result.sorted = Some(lists(&room, band, &regions)?);
+        result.sorted = Some(nodes::lists(&room, band, &regions)?);
         for pass in room.blend_linked(longest, u32::MAX)? {
             time += attempt::submit(&room, &[pass])?;
         }
@@ -253,52 +254,5 @@ fn until_done(room: &Room<'_, '_>, pass: Ready, most: u64) -> Result<Duration, G
     Err(GpuError::Endless {
         adapter: gpu.name.clone(),
         stage: "linked",
-    })
-}
-
-/// The nodes of all regions, one region after another without gaps, with links to match. What leads to a
-/// place that no counter handed out leads nowhere.
-fn lists(room: &Room<'_, '_>, band: Band, regions: &[Region]) -> Result<Lists, GpuError> {
-    let rasterizer = room.rasterizer;
-    let gpu = rasterizer.gpu;
-    let all = regions.last().map_or(0, |last| last.first + last.capacity);
-    let nodes: Vec<[u32; 4]> = gpu.read(room.get("nodes"), all as usize)?;
-    let pixels = band.pixels(rasterizer.size) as usize;
-    let heads: Vec<u32> = gpu.read(room.get("heads"), pixels)?;
-    // By address, the node's number among those that are stored.
-    let mut numbers = vec![None; nodes.len()];
-    let mut count = 0;
-    for region in regions {
-        for at in region.first..region.first + region.attempts.min(region.capacity) {
-            numbers[at as usize] = Some(count);
-            count += 1;
-        }
-    }
-    // One less than the end of a list is no address.
-    let moved = |at: u32| match numbers.get(at as usize) {
-        _ if at == EOL => EOL,
-        Some(Some(number)) => *number,
-        _ => EOL - 1,
-    };
-    let stored = numbers
-        .iter()
-        .zip(&nodes)
-        .filter(|(number, _)| number.is_some());
-    let nodes: Vec<Node> = stored
-        .map(|(_, &[key, next, prim, mask])| Node {
-            key,
-            next: moved(next),
-            prim,
-            mask,
-        })
-        .collect();
-    let face = |node: &Node| rasterizer.colours.get(node.prim as usize).copied();
-    let colours = nodes.iter().map(|node| face(node).unwrap_or([f32::NAN; 4]));
-    Ok(Lists {
-        heads: heads.into_iter().map(moved).collect(),
-        colours: colours.collect(),
-        nodes,
-        attempts: count,
-        capacity: count,
     })
 }
