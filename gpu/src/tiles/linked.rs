@@ -50,8 +50,8 @@ pub struct Linked {
     pub bands: Vec<BandResult>,
     /// The picture, row by row.
     pub image: Vec<[f32; 3]>,
-    /// Tiles whose nodes had to be made room for again.
-    pub overflowed: u32,
+    /// What attempts stored that had too little room for some tile.
+    pub overflowed: Vec<(Band, Lists)>,
     /// Time on the device, without transfers and retries.
     pub time: Duration,
 }
@@ -83,7 +83,7 @@ impl Linked {
     fn add(&mut self, part: Self) {
         self.bands.extend(part.bands);
         self.image.extend(part.image);
-        self.overflowed += part.overflowed;
+        self.overflowed.extend(part.overflowed);
         self.time += part.time;
     }
 }
@@ -116,26 +116,28 @@ fn of_band(
     let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
     let each = capacity / room.tiles;
     let mut regions = placed((0..room.tiles).map(|_| each));
-    let mut overflowed = 0;
+    let mut overflowed = Vec::new();
     loop {
         room.with_nodes(&regions)?;
         time += attempt::submit(&room, &room.drawn("linked", 0, drawn)?)?;
         let counted: Vec<Region> = rasterizer.gpu.read(room.get("regions"), regions.len())?;
         let needed: u64 = counted.iter().map(|r| u64::from(r.attempts)).sum();
-        let full = counted.iter().zip(&regions);
-        let full = full
-            .filter(|(seen, region)| seen.attempts > region.capacity)
-            .count();
-        if full == 0 {
+        let full = |(seen, region): (&Region, &Region)| seen.attempts > region.capacity;
+        if !counted.iter().zip(&regions).any(full) {
             regions = counted;
             break;
         }
         let needed = u32::try_from(needed).unwrap_or(SATURATED).min(SATURATED);
-        if needed > capacity || overflowed > 0 {
+        if needed > capacity || !overflowed.is_empty() {
             return Ok(Tried::Needs(needed));
         }
+        let stored = counted.iter().zip(&regions).map(|(seen, region)| Region {
+            attempts: seen.attempts,
+            ..*region
+        });
+        let stored: Vec<Region> = stored.collect();
+        overflowed.push((band, nodes::lists(&room, band, &stored)?));
         // Together they fit: each tile gets what it asked for.
-        overflowed = u32::try_from(full).expect("fewer than 2^32 tiles");
         regions = placed(counted.iter().map(|r| r.attempts));
     }
     let built = nodes::lists(&room, band, &regions)?;

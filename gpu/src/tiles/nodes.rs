@@ -47,13 +47,14 @@ pub(super) fn lists(
             mask,
         })
         .collect();
+    let attempts: u64 = regions.iter().map(|r| u64::from(r.attempts)).sum();
     let face = |node: &Node| rasterizer.colours.get(node.prim as usize).copied();
     let colours = nodes.iter().map(|node| face(node).unwrap_or([f32::NAN; 4]));
     Ok(Lists {
         heads: heads.into_iter().map(moved).collect(),
         colours: colours.collect(),
         nodes,
-        attempts: count,
+        attempts: u32::try_from(attempts).unwrap_or(u32::MAX),
         capacity: count,
     })
 }

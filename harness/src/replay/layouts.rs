@@ -211,7 +211,7 @@ impl GpuLeg<'_> {
 }
 
 /// Fragments of a band.
-fn fragments(sorted: &Sorted, band: Band, width: u32) -> u64 {
+pub(super) fn fragments(sorted: &Sorted, band: Band, width: u32) -> u64 {
     let [first, end] = [band.first, band.first + band.rows].map(|row| (row * width) as usize);
     u64::from(sorted.offsets[end] - sorted.offsets[first])
 }

@@ -12,7 +12,9 @@ use wgpu::DeviceType;
 
 use super::Extent;
 use super::gpu::{From, GpuLeg};
+use super::layouts::fragments;
 use super::rows::Rows;
+use crate::compare::lists::compare_overflowed;
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
 use crate::row::Class;
@@ -185,7 +187,11 @@ impl GpuLeg<'_> {
             let built = |b: &BandResult| {
                 compare::lists::compare(&self.expected(&spec.sorted, b.band), &b.built)
             };
-            let built = Judgement::sum(linked.bands.iter().map(built));
+            let overflowed = linked.overflowed.iter().map(|(band, lists)| {
+                let enough = fragments(&spec.sorted, *band, width);
+                compare_overflowed(&self.expected(&spec.sorted, *band), lists, enough)
+            });
+            let built = Judgement::sum(linked.bands.iter().map(built).chain(overflowed));
             if built.differ() > 0 {
                 return built;
             }
