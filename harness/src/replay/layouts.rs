@@ -148,7 +148,9 @@ impl GpuLeg<'_> {
             GpuError::Endless { .. } => Cause::Cycle,
             GpuError::Limit { what, .. } if ["bucket", "ordered"].contains(what) => Cause::Overflow,
             // Which region is fullest depends on how work is shared out.
-            GpuError::Limit { what: "regions", .. } => {
+            GpuError::Limit {
+                what: "regions", ..
+            } => {
                 let reason = error.to_string();
                 rows.skip(layout.name(), spec, &label, Class::Structure, reason);
                 return Ok(());
