@@ -99,7 +99,7 @@ impl Plan {
         let samples = scene.samples.count();
         passes.extend(asked.passes(transparent, samples));
         passes.extend(by_tiles(transparent, samples, skip));
-        passes.extend(layouts::passes(transparent, skip));
+        passes.extend(layouts::passes(asked.rivals, transparent));
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
             name: "depth test",

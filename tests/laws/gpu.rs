@@ -229,7 +229,11 @@ proptest! {
 
 /// Runs every layout and compares each; the first attempts have too little room.
 fn layouts_agree(layers: &Layers, adapter: &Adapter, path: Path) -> Result<(), TestCaseError> {
-    let plan = Plan::new(&layers.scene, true);
+    let asked = Asked {
+        rivals: true,
+        ..Asked::default()
+    };
+    let plan = Plan::asking(&layers.scene, true, asked);
     let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
     let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
     let leg = GpuLeg {

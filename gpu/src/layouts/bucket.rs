@@ -66,7 +66,7 @@ pub(super) fn run(
         all: Built::default(),
     };
     bucket.make_room(first.clamp(1, most))?;
-    bucket.to_the_end(depths(rasterizer))?;
+    bucket.all_ranges(depths(rasterizer))?;
     let counted = u32::try_from(bucket.counted).unwrap_or(u32::MAX);
     let mut all = bucket.all;
     all.image = bucket.room.picture()?;
@@ -100,7 +100,7 @@ impl Bucket<'_, '_> {
     }
 
     /// All ranges, nearest first.
-    fn to_the_end(&mut self, depths: Range<Entry>) -> Result<(), GpuError> {
+    fn all_ranges(&mut self, depths: Range<Entry>) -> Result<(), GpuError> {
         // What is beyond the corners' depths would be a defect, which comparisons are to see.
         let mut ranges = vec![ALL];
         while let Some(range) = ranges.pop() {

@@ -16,16 +16,17 @@ use super::Extent;
 use super::gpu::{From, GpuLeg};
 use super::rows::Rows;
 use super::tiles::part;
+use crate::cause::Cause;
 use crate::compare::lists::{certify, compare_overflowed};
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{Gpu, Observed};
 use crate::row::Class;
 
 /// Most triangles and fragments that a default run has on a software driver.
-const WORK_MAX: u64 = 1 << 17;
+const WORK_MAX: u64 = 1 << 15;
 
 /// The same where each fragment goes along its list: steps of all.
-const STEPS_MAX: u64 = 1 << 20;
+const STEPS_MAX: u64 = 1 << 18;
 
 /// Adds rows for every layout, which starts from the spec's triangles and opaque surfaces.
 ///
@@ -50,15 +51,19 @@ pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuE
             Some(rasterizer) => rasterizer,
             none => none.insert(leg.rasterizer()?),
         };
-        let seen = leg.layout(layout, rasterizer, rows)?;
-        if matches!(layout, Layout::Bucket | Layout::Precalc) {
-            arrays.push(seen);
+        match leg.draw(layout, rasterizer) {
+            Err(error) => leg.refused(layout, error, rows)?,
+            Ok(built) => {
+                let seen = leg.judge_lists_of(layout, built, rasterizer, rows);
+                let ranked = matches!(layout, Layout::Bucket | Layout::Precalc);
+                arrays.extend(seen.filter(|_| ranked));
+            }
         }
     }
     match arrays.is_empty() {
         true => {
             let reason = reason_not_run(leg, extent, Layout::Bucket);
-            let reason = reason.unwrap_or_else(|| "there are no arrays".to_owned());
+            let reason = reason.unwrap_or_else(|| "the lists differ, see bucket".to_owned());
             rows.skip("rank", &leg.spec.label, &leg.label(), Class::Tie, reason);
         }
         false => leg.judge_rank(arrays, rows),
@@ -119,13 +124,7 @@ fn steps_of_an_invocation(leg: &GpuLeg<'_>) -> u64 {
 }
 
 impl GpuLeg<'_> {
-    /// Runs a layout, and compares its lists. Where arrays are put in order, that is another stage.
-    fn layout(
-        &self,
-        layout: Layout,
-        rasterizer: &Rasterizer<'_>,
-        rows: &mut Rows,
-    ) -> Result<Observed<Gpu, Built>, GpuError> {
+    fn draw(&self, layout: Layout, rasterizer: &Rasterizer<'_>) -> Result<Built, GpuError> {
         let own = &self.spec.value;
         let options = Options {
             opaque: &own.opaque,
@@ -136,19 +135,55 @@ impl GpuLeg<'_> {
         };
         let inspect = |lists: &Lists| certify(lists).longest();
         let is_opaque = |prim| own.is_opaque(prim);
-        let seen = draw(rasterizer, layout, options, is_opaque, inspect)?;
-        let note = note(layout, &seen, rasterizer);
-        let time = seen.build;
-        let seen = Observed::<Gpu, Built>::new(self.label(), seen).taking(time);
+        draw(rasterizer, layout, options, is_opaque, inspect)
+    }
+
+    /// What the plan has made sure of cannot be a limit.
+    ///
+    /// # Errors
+    /// Whatever it says nothing of.
+    fn refused(&self, layout: Layout, error: GpuError, rows: &mut Rows) -> Result<(), GpuError> {
+        let (spec, label) = (&self.spec.label, self.label());
+        let cause = match &error {
+            GpuError::Endless { .. } => Cause::Cycle,
+            GpuError::Limit { what, .. } if ["bucket", "ordered"].contains(what) => Cause::Overflow,
+            // Which region is fullest depends on how work is shared out.
+            GpuError::Limit {
+                what: "regions", ..
+            } => {
+                let reason = error.to_string();
+                rows.skip(layout.name(), spec, &label, Class::Structure, reason);
+                return Ok(());
+            }
+            _ => return Err(error),
+        };
+        rows.fail(layout.name(), spec, &label, Some(cause), error.to_string());
+        Ok(())
+    }
+
+    /// Compares a layout's lists. Where arrays are put in order, that is another stage; `None` if they
+    /// differ, as what follows from others says nothing.
+    fn judge_lists_of(
+        &self,
+        layout: Layout,
+        built: Built,
+        rasterizer: &Rasterizer<'_>,
+        rows: &mut Rows,
+    ) -> Option<Observed<Gpu, Built>> {
+        let own = &self.spec.value;
+        let note = note(layout, &built, rasterizer);
+        let time = built.build;
+        let seen = Observed::<Gpu, Built>::new(self.label(), built).taking(time);
         let spec = self.spec.derive(&own.sorted).taking(own.times.build);
         let mut judgement = compare(&spec, &seen, |sorted, built| {
             self.lists(layout, sorted, built)
         });
-        if judgement.differ() == 0 {
+        let agrees = judgement.differ() == 0;
+        if agrees {
             judgement.note = note;
         }
         rows.add(layout.name(), &spec, &seen, judgement);
-        Ok(seen)
+        agrees.then_some(seen)
     }
 
     /// The lists as they were built; for what has no stage of its own, also their order and the picture.
