@@ -16,13 +16,15 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 17] = [
+const ROOTS: [&str; 19] = [
     "abuffer",
     "alpha",
     "ceiling",
     "defocus",
     "density",
     "dual",
+    "fan_scan",
+    "fans",
     "grid",
     "hbao",
     "ldm",

@@ -30,6 +30,8 @@ const FILES: &[(&str, &str)] = shipped![
     "drawn",
     "drawn_samples",
     "dual",
+    "fan_scan",
+    "fans",
     "frame",
     "grid",
     "hbao",
