@@ -21,6 +21,7 @@ pub mod ceiling;
 pub mod counts;
 pub mod csv;
 pub mod error;
+pub mod full;
 mod gpu;
 pub mod grid;
 pub mod ldm;
@@ -163,7 +164,9 @@ impl Bench {
                     && other.method.has_layers()
             };
             let mut rivals = self.rows.iter().filter(rival);
-            !row.method.has_layers() || rivals.all(|other| (row.time.median, row.method) < (other.time.median, other.method))
+            !row.method.has_layers()
+                || rivals
+                    .all(|other| (row.time.median, row.method) < (other.time.median, other.method))
         };
         let mut fastest: Vec<&Row> = self.rows.iter().filter(|row| faster(row)).collect();
         let (scenes, legs) = (self.scenes(), self.legs());

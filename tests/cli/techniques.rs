@@ -59,9 +59,16 @@ fn techniques_samples_and_bands_are_measured() {
         let right = row["all"] == "true";
         assert_eq!(exact, right, "{row:?}");
     }
-    let samples: Vec<&str> = of("/fragment", "sort").iter().map(|r| r["samples"]).collect();
+    let samples: Vec<&str> = of("/fragment", "sort")
+        .iter()
+        .map(|r| r["samples"])
+        .collect();
     assert_eq!(samples, ["1", "1", "4"]);
     assert_eq!(of("/compute", "sort")[0]["bytes_per_fragment"], "32");
-    assert!(ran.stdout.contains("abuffer/deep with 4 samples"), "{}", ran.stdout);
+    assert!(
+        ran.stdout.contains("abuffer/deep with 4 samples"),
+        "{}",
+        ran.stdout
+    );
     assert!(ran.stdout.contains(" bands "), "{}", ran.stdout);
 }

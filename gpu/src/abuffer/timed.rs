@@ -234,7 +234,10 @@ impl<'r, 'g> Timed<'r, 'g> {
                     continue;
                 }
                 let picture: Vec<[f32; 4]> = gpu.read(&self.buffers.picture, count)?;
-                let pixels = picture.iter().step_by(stride).map(|[r, g, b, _]| [*r, *g, *b]);
+                let pixels = picture
+                    .iter()
+                    .step_by(stride)
+                    .map(|[r, g, b, _]| [*r, *g, *b]);
                 match all.iter_mut().find(|(other, _)| other == part) {
                     Some((_, picture)) => picture.extend(pixels),
                     None => all.push((*part, pixels.collect())),

@@ -63,7 +63,11 @@ impl Passes<'_> {
     ) -> Result<(), GpuError> {
         let named = [("counts", counts), ("before", before), ("sums", sums)];
         let parts = items.div_ceil(TILE);
-        for (entry, groups) in [("fan_parts", parts), ("fan_sums", 1), ("fan_offsets", parts)] {
+        for (entry, groups) in [
+            ("fan_parts", parts),
+            ("fan_sums", 1),
+            ("fan_offsets", parts),
+        ] {
             self.add(("fan_scan", entry), [0, items, groups], &named)?;
         }
         Ok(())
@@ -105,11 +109,17 @@ impl<'g> Timed<'g> {
         let buffers = [
             ("matrices", matrices),
             ("vertices", vertices),
-            ("positions", gpu.storage("positions", 16 * scene.vertices.len() as u64)?),
+            (
+                "positions",
+                gpu.storage("positions", 16 * scene.vertices.len() as u64)?,
+            ),
             ("triangles", gpu.upload("triangles", &corners)?),
             ("colours", gpu.upload("colours", &colours)?),
             ("counts", words("counts", triangles)?),
-            ("polygons", gpu.storage("polygons", stages::SLOTS * u64::from(triangles))?),
+            (
+                "polygons",
+                gpu.storage("polygons", stages::SLOTS * u64::from(triangles))?,
+            ),
             ("fans", words("fans", triangles)?),
             ("offsets", words("offsets", triangles)?),
             ("fanned", gpu.storage("fanned", 36 * u64::from(prims))?),
@@ -182,7 +192,10 @@ impl<'g> Timed<'g> {
     ///
     /// # Errors
     /// Whatever the device reports.
-    #[expect(clippy::type_complexity, reason = "three corners of three numbers each")]
+    #[expect(
+        clippy::type_complexity,
+        reason = "three corners of three numbers each"
+    )]
     pub fn made(&self) -> Result<(Vec<[[i32; 3]; 3]>, Vec<u32>), GpuError> {
         for pass in &self.passes {
             pass.run(self.gpu)?;

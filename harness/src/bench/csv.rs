@@ -98,7 +98,8 @@ fn values(row: &Row) -> [String; COLUMNS.len()] {
         frame(|of| of.median),
         frame(|of| of.min),
         frame(|of| of.max),
-        row.of_fragment.map_or_else(String::new, |bytes| bytes.to_string()),
+        row.of_fragment
+            .map_or_else(String::new, |bytes| bytes.to_string()),
         row.bands.to_string(),
         vertices,
     ]

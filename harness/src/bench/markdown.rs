@@ -47,7 +47,10 @@ pub fn page(bench: &Bench) -> String {
         lines.push(format!("## {}", text(&section.heading)));
         lines.push(String::new());
         lines.push(format!("| {} |", section.columns.join(" | ")));
-        lines.push(format!("|---|---|{}", "---:|".repeat(section.columns.len() - 2)));
+        lines.push(format!(
+            "|---|---|{}",
+            "---:|".repeat(section.columns.len() - 2)
+        ));
         let cells = |row: &Vec<String>| row.iter().map(|c| text(c)).collect::<Vec<_>>().join(" | ");
         lines.extend(section.rows.iter().map(|row| format!("| {} |", cells(row))));
     }

@@ -17,15 +17,17 @@ use crate::scene::{LoadError, Loaded, load_text};
 
 pub use tables::{Section, sections};
 
-/// A scene of the paper.
+/// A scene of the paper, or another of our own.
 pub struct Scene {
     /// What it is called in results.
     pub name: &'static str,
-    text: &'static str,
+    pub(super) text: &'static str,
     /// Numbers of nearest layers beside all.
-    layers: &'static [u32],
+    pub(super) layers: &'static [u32],
     /// Samples a pixel.
-    samples: &'static [u32],
+    pub(super) samples: &'static [u32],
+    /// Whether it is too much for a software driver.
+    pub(super) boards: bool,
 }
 
 /// The teapot of Table 1.
@@ -44,18 +46,21 @@ pub const SCENES: [Scene; 3] = [
         text: include_str!("paper/teapot.toml"),
         layers: &[],
         samples: &[],
+        boards: false,
     },
     Scene {
         name: DRAGON,
         text: include_str!("paper/dragon.toml"),
         layers: &[],
         samples: &[1, 2, 4, 8],
+        boards: false,
     },
     Scene {
         name: MECHA,
         text: include_str!("paper/mecha.toml"),
         layers: &[0, 2, 4, 8, 16, 32, 64],
         samples: &[],
+        boards: false,
     },
 ];
 
@@ -76,6 +81,17 @@ pub(super) const TABLE: &[Technique] = &[
         name: "linked list",
         methods: &[Method::Insertion, Method::Sort],
         fps: [Some(743.0), Some(338.0)],
+    },
+    // Count, sums, and a second pass over the triangles; an array of a fixed size for each pixel.
+    Technique {
+        name: "precalc",
+        methods: &[],
+        fps: [Some(285.0), Some(143.0)],
+    },
+    Technique {
+        name: "bucket depth peeling",
+        methods: &[],
+        fps: [None, Some(256.0)],
     },
     Technique {
         name: "depth peeling",
@@ -109,8 +125,12 @@ pub(super) const FIGURE: [(u32, f64); 7] = [
 pub(super) const FIGURE_ALPHA: f64 = 322.0;
 
 /// Frames per second of the dragon with so many samples a pixel.
-pub(super) const SAMPLES: [(u32, Option<f64>); 4] =
-    [(1, Some(338.0)), (2, Some(230.0)), (4, Some(152.0)), (8, None)];
+pub(super) const SAMPLES: [(u32, Option<f64>); 4] = [
+    (1, Some(338.0)),
+    (2, Some(230.0)),
+    (4, Some(152.0)),
+    (8, None),
+];
 
 impl Scene {
     /// Reads it.
@@ -135,7 +155,8 @@ impl Scene {
         Asked {
             layers: options.layers.clone().or(Some(self.layers.to_vec())),
             samples,
-            rivals: true,
+            rivals: !self.boards,
+            boards: self.boards,
         }
     }
 }
@@ -192,8 +213,14 @@ mod tests {
         let run = SpecRun::new(scene, primitives(scene, 8), &plan).unwrap();
         let lengths = || run.sorted.offsets.windows(2).map(|ends| ends[1] - ends[0]);
         let deepest = lengths().max();
-        assert!((56..=64).contains(&deepest.unwrap_or(0)), "{deepest:?} layers");
+        assert!(
+            (56..=64).contains(&deepest.unwrap_or(0)),
+            "{deepest:?} layers"
+        );
         let share = lengths().filter(|n| *n > 0).count() as f64 / (1280.0 * 720.0);
-        assert!((share - 0.4).abs() < 0.01, "{share} of the pixels have a list");
+        assert!(
+            (share - 0.4).abs() < 0.01,
+            "{share} of the pixels have a list"
+        );
     }
 }

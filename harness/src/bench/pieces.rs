@@ -124,10 +124,16 @@ mod tests {
                 let must = sorted_rows(&whole.sorted, band, width);
                 assert!(alone.sorted == must, "{name}: lists of {band:?}");
                 let pixels = (first * width) as usize..((first + rows) * width) as usize;
-                assert!(alone.image == whole.image[pixels.clone()], "{name}: {band:?}");
+                assert!(
+                    alone.image == whole.image[pixels.clone()],
+                    "{name}: {band:?}"
+                );
                 let samples = scene.samples.count() as usize;
                 let places = pixels.start * samples..pixels.end * samples;
-                assert!(alone.opaque.key == whole.opaque.key[places], "{name}: {band:?}");
+                assert!(
+                    alone.opaque.key == whole.opaque.key[places],
+                    "{name}: {band:?}"
+                );
             }
         }
     }

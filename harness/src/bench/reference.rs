@@ -3,16 +3,14 @@
 use triptych_gpu::frame::Band;
 use triptych_spec::abuffer::{Lists, Opaque, Sorted, nearest_layers, resolve};
 use triptych_spec::bound::Bounded;
-use triptych_spec::raster::Samples;
+use triptych_spec::raster::{self, Samples};
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::{Primitives, primitives};
 
 use super::counts::Counts;
 use super::error::{Error, psnr};
 use super::gpu::Refusal;
-use super::pieces::{
-    common, from_row, lists_of_rows, looked_at, of_rows, sorted_rows, within,
-};
+use super::pieces::{common, from_row, lists_of_rows, looked_at, of_rows, sorted_rows, within};
 use crate::compare::order;
 use crate::compare::{compare, image};
 use crate::observe::{Gpu, Observed, Spec};
@@ -72,13 +70,23 @@ impl Grid {
         plan: &Plan,
         (bits, samples): (u32, Samples),
     ) -> Result<Self, String> {
+        Self::holding(FRAGMENTS_MAX, scene, plan, (bits, samples))
+    }
+
+    /// The same where so many fragments are the most that are held.
+    fn holding(
+        most: u64,
+        scene: &Scene,
+        plan: &Plan,
+        (bits, samples): (u32, Samples),
+    ) -> Result<Self, String> {
         let primitives = Primitives {
             samples,
             ..primitives(scene, bits)
         };
         let faces = faces(scene, &primitives);
         let size = primitives.size;
-        let few = triptych_spec::raster::count(&primitives) <= FRAGMENTS_MAX;
+        let few = raster::count(&primitives) <= most;
         let (counts, rows, bands) = if few {
             (Counts::default(), Vec::new(), vec![Band::whole(size)])
         } else {
@@ -98,7 +106,9 @@ impl Grid {
             let run = SpecRun::new(scene, of_rows(&grid.primitives, band), plan)?;
             if few {
                 grid.counts = Counts::of(&run);
-                let pixels = run.sorted.offsets[..].windows(2).map(|ends| ends[1] - ends[0]);
+                let pixels = run.sorted.offsets[..]
+                    .windows(2)
+                    .map(|ends| ends[1] - ends[0]);
                 let lengths: Vec<u32> = pixels.collect();
                 let rows = lengths.chunks(size.width as usize);
                 grid.rows = rows.map(|row| row.iter().sum()).collect();
@@ -273,15 +283,4 @@ fn layers(wanted: Option<&[u32]>, longest: u32) -> Vec<u32> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::layers;
-
-    #[test]
-    fn all_layers_are_always_among_them() {
-        assert_eq!(layers(None, 1), [1]);
-        assert_eq!(layers(None, 8), [1, 2, 4, 8]);
-        assert_eq!(layers(None, 13), [1, 2, 4, 8, 13]);
-        assert_eq!(layers(Some(&[20, 3, 3]), 13), [3, 13]);
-        assert_eq!(layers(Some(&[0, 2]), 13), [0, 2, 13]);
-    }
-}
+mod tests;

@@ -32,10 +32,7 @@ pub(super) const ALL: &[Kind] = &[
     kind(Method::Weighted, weighted),
 ];
 
-const fn kind(
-    method: Method,
-    new: for<'r> fn(&Given<'r>) -> Result<Made<'r>, Refusal>,
-) -> Kind {
+const fn kind(method: Method, new: for<'r> fn(&Given<'r>) -> Result<Made<'r>, Refusal>) -> Kind {
     Kind { method, new }
 }
 

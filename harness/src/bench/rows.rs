@@ -57,7 +57,11 @@ pub(super) fn rows(
             largest: m.error.largest,
             memory: m.memory,
             of_fragment: m.of_fragment,
-            bands: if m.method.has_lists() { timing.bands } else { 1 },
+            bands: if m.method.has_lists() {
+                timing.bands
+            } else {
+                1
+            },
             fragments_per_second: 1000.0 * fragments as f64 / time.median,
             bound: what.to_owned(),
             bound_ms: 1000.0 * seconds,

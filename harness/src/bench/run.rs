@@ -10,7 +10,7 @@ use triptych_spec::raster::Samples;
 use super::counts::Work;
 use super::scene::scene;
 use super::station::Station;
-use super::{Bench, Ceilings, Machine, Progress, RUNS, SCENES, paper};
+use super::{Bench, Ceilings, Machine, Progress, RUNS, SCENES, full, paper};
 use crate::corpus::Entry;
 use crate::replay::gpu::Adapter;
 use crate::scene::{LoadError, Loaded, load_entry};
@@ -29,6 +29,8 @@ pub struct Options {
     pub scenes: Option<Vec<Entry>>,
     /// The paper's scenes, [`paper::SCENES`], alone.
     pub paper: bool,
+    /// Those of nothing but fragments, [`full::SCENES`], alone.
+    pub full: bool,
     /// Raster paths.
     pub paths: Vec<Path>,
     /// Rounds that count, at least one; `None`: [`RUNS`], few of a software driver.
@@ -67,6 +69,8 @@ pub(super) struct Asked {
     pub(super) samples: Vec<u32>,
     /// Whether techniques beside lists are measured.
     pub(super) rivals: bool,
+    /// Whether it is too much for a software driver.
+    pub(super) boards: bool,
 }
 
 /// What came of a run.
@@ -197,17 +201,18 @@ impl Bench {
         options: &Options,
     ) -> Result<Vec<(Loaded, Asked)>, String> {
         let mut all = Vec::new();
-        if options.paper || options.scenes.is_none() {
-            for own in &paper::SCENES {
-                let loaded = self.loaded(own.name, own.load())?;
-                let asked = own.asked(options);
-                all.extend(loaded.map(|loaded| (loaded, asked)));
-            }
+        let ours = options.scenes.is_none() && !options.paper && !options.full;
+        let paper = paper::SCENES.iter().filter(|_| options.paper || ours);
+        let full = full::SCENES.iter().filter(|_| options.full);
+        for own in paper.chain(full) {
+            let loaded = self.loaded(own.name, own.load())?;
+            let asked = own.asked(options);
+            all.extend(loaded.map(|loaded| (loaded, asked)));
         }
         let entries = match &options.scenes {
             Some(scenes) => scenes.clone(),
-            None if options.paper => Vec::new(),
-            None => named(corpus, &SCENES, &mut self.remarks),
+            None if ours => named(corpus, &SCENES, &mut self.remarks),
+            None => Vec::new(),
         };
         for entry in &entries {
             let loaded = self.loaded(&entry.name, load_entry(entry, None))?;
@@ -215,6 +220,7 @@ impl Bench {
                 layers: options.layers.clone(),
                 samples: options.samples.clone(),
                 rivals: options.rivals,
+                boards: false,
             };
             all.extend(loaded.map(|loaded| (loaded, asked)));
         }

@@ -83,7 +83,9 @@ pub(super) fn scene(
     let mut done = Done::default();
     let (grids, legs) = grids(loaded, asked, &plan, (stations, options), &mut done)?;
     let own = (SUBPIXEL_BITS, loaded.scene.samples);
-    let spec = &grids[&own];
+    let Some(spec) = grids.get(&own) else {
+        return Ok(done);
+    };
     if grids.values().all(|grid| grid.counts.longest() == 0) {
         let words = format!("{name}: nothing transparent is seen");
         done.skipped.push(words);
@@ -93,7 +95,8 @@ pub(super) fn scene(
     for (station, path, key) in legs {
         let label = station.adapter.label(path);
         let grid = &grids[&key];
-        if let Some(rasterizer) = done.keep(&format!("{name}: {label}"), station.rasterizer(path, grid))
+        if let Some(rasterizer) =
+            done.keep(&format!("{name}: {label}"), station.rasterizer(path, grid))
         {
             prepared.push(Prepared {
                 label,
@@ -186,13 +189,25 @@ fn grids<'s>(
     for station in stations {
         for path in &options.paths {
             let what = format!("{}: {}", loaded.name, station.adapter.label(*path));
+            if asked.boards && station.is_software() {
+                let words = "of so many fragments only on a board".to_owned();
+                done.refused(&what, Refusal::Skipped(words));
+                continue;
+            }
             if let Some(samples) = done.keep(&what, station.samples(*path, samples)) {
                 legs.push((station, *path, (station.adapter.bits(*path), samples)));
             }
         }
     }
     let mut grids = Grids::new();
-    for key in legs.iter().map(|leg| leg.2).chain([(SUBPIXEL_BITS, samples)]) {
+    if legs.is_empty() && asked.boards {
+        return Ok((grids, legs));
+    }
+    for key in legs
+        .iter()
+        .map(|leg| leg.2)
+        .chain([(SUBPIXEL_BITS, samples)])
+    {
         if let Entry::Vacant(vacant) = grids.entry(key) {
             let mut grid = Grid::new(&loaded.scene, plan, key)?;
             grid.draw(&loaded.scene, asked.layers.as_deref());

@@ -81,8 +81,9 @@ impl<'g> Core<'g> {
             false => &["build"],
         };
         let before = names.iter().zip(&self.taken[0]);
-        let mut parts: Vec<(&'static str, Vec<f64>)> =
-            before.map(|(name, seconds)| (*name, vec![*seconds])).collect();
+        let mut parts: Vec<(&'static str, Vec<f64>)> = before
+            .map(|(name, seconds)| (*name, vec![*seconds]))
+            .collect();
         parts.extend(last);
         let work: &[Part] = match method {
             Method::Sort => &[Part::Sort, Part::Resolve],

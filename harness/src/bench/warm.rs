@@ -31,10 +31,7 @@ impl<'a> WarmUp<'a> {
 /// until it was at work for [`WARM_UP_WORK`], as clocks rise by time and not by rounds: a board
 /// runs at a third of its clock in the first second. What does not count is the time in which
 /// the host prepares. The legs that `keep` refuses are left out from there on.
-pub(super) fn warm_up(
-    legs: &mut Vec<Leg<'_>>,
-    mut keep: impl FnMut(Result<(), Refusal>) -> bool,
-) {
+pub(super) fn warm_up(legs: &mut Vec<Leg<'_>>, mut keep: impl FnMut(Result<(), Refusal>) -> bool) {
     let mut warm = WarmUp::default();
     while warm.rounds < WARM_UP || legs.iter().any(|leg| warm.is_due(leg.adapter)) {
         legs.retain(|leg| {

@@ -46,6 +46,9 @@ pub struct Args {
     /// The paper's Table 1 and Figure 4 alone, or beside the scenes that are named
     #[arg(long)]
     paper: bool,
+    /// Nothing but fragments: 64 full layers, and 2^30 fragments on a board
+    #[arg(long)]
+    full: bool,
     /// Rounds that count, after two, and a second of each adapter, to warm up [default: 21, and 5
     /// of software drivers]
     #[arg(long, value_name = "N")]
@@ -168,6 +171,7 @@ impl Args {
             scenes: self.scenes.if_any(corpus)?,
             paths: self.on.paths(),
             paper: self.paper,
+            full: self.full,
             runs: self.runs.map(NonZeroU32::get),
             samples: self.samples.clone(),
             rivals: self.rivals,
