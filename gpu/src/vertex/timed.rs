@@ -102,32 +102,7 @@ impl<'g> Timed<'g> {
         }
         let [triangles, slots] = all.map(|count| u32::try_from(count).expect("within the limit"));
         let prims = slots / 2;
-        let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
-        let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|t| t.vertices).collect();
-        let colours: Vec<[f32; 4]> = scene.triangles.iter().map(|t| t.colour).collect();
-        let [matrices, vertices] = stages::inputs(gpu, scene)?;
-        let buffers = [
-            ("matrices", matrices),
-            ("vertices", vertices),
-            (
-                "positions",
-                gpu.storage("positions", 16 * scene.vertices.len() as u64)?,
-            ),
-            ("triangles", gpu.upload("triangles", &corners)?),
-            ("colours", gpu.upload("colours", &colours)?),
-            ("counts", words("counts", triangles)?),
-            (
-                "polygons",
-                gpu.storage("polygons", stages::SLOTS * u64::from(triangles))?,
-            ),
-            ("fans", words("fans", triangles)?),
-            ("offsets", words("offsets", triangles)?),
-            ("fanned", gpu.storage("fanned", 36 * u64::from(prims))?),
-            ("painted", gpu.storage("painted", 16 * u64::from(prims))?),
-            ("rows", words("rows", slots)?),
-            ("starts", words("starts", slots)?),
-            ("sums", words("sums", triangles.max(slots).div_ceil(TILE))?),
-        ];
+        let buffers = buffers(gpu, scene, [triangles, slots])?;
         let named: Vec<(&str, &wgpu::Buffer)> = buffers.iter().map(|(n, b)| (*n, b)).collect();
         let of = |name: &str| {
             let found = named.iter().find(|(other, _)| *other == name);
@@ -204,4 +179,41 @@ impl<'g> Timed<'g> {
         let fanned = self.gpu.read(&self.fanned, prims)?;
         Ok((fanned, self.gpu.read(&self.starts, 2 * prims)?))
     }
+}
+
+/// Buffers by the names of variables, for so many triangles, and twice as many as come of them.
+fn buffers(
+    gpu: &Gpu,
+    scene: &Scene,
+    [triangles, slots]: [u32; 2],
+) -> Result<Vec<(&'static str, wgpu::Buffer)>, GpuError> {
+    let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
+    let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|t| t.vertices).collect();
+    let colours: Vec<[f32; 4]> = scene.triangles.iter().map(|t| t.colour).collect();
+    let [matrices, vertices] = stages::inputs(gpu, scene)?;
+    Ok(vec![
+        ("matrices", matrices),
+        ("vertices", vertices),
+        (
+            "positions",
+            gpu.storage("positions", 16 * scene.vertices.len() as u64)?,
+        ),
+        ("triangles", gpu.upload("triangles", &corners)?),
+        ("colours", gpu.upload("colours", &colours)?),
+        ("counts", words("counts", triangles)?),
+        (
+            "polygons",
+            gpu.storage("polygons", stages::SLOTS * u64::from(triangles))?,
+        ),
+        ("fans", words("fans", triangles)?),
+        ("offsets", words("offsets", triangles)?),
+        ("fanned", gpu.storage("fanned", 36 * u64::from(slots / 2))?),
+        (
+            "painted",
+            gpu.storage("painted", 16 * u64::from(slots / 2))?,
+        ),
+        ("rows", words("rows", slots)?),
+        ("starts", words("starts", slots)?),
+        ("sums", words("sums", triangles.max(slots).div_ceil(TILE))?),
+    ])
 }

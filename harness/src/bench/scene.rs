@@ -58,6 +58,47 @@ impl Done {
     }
 }
 
+impl Done {
+    /// The spec's rows, unless it does not hold the scene.
+    fn of_core(&mut self, loaded: &Loaded, plan: &Plan, spec: &Grid, bound: &Bound<'_>) {
+        let Some(run) = spec.whole() else {
+            self.skipped.push(format!(
+                "{}: spec: {} fragments are more than a replay holds; {} rows of pixels are \
+                 compared",
+                loaded.name,
+                spec.fragments(),
+                spec.rows_compared()
+            ));
+            return;
+        };
+        let core = Core::new(&loaded.scene, plan, spec, run);
+        let timing = Timing {
+            leg: "spec",
+            bands: 1,
+            vertices: Some(vec![core.vertices]),
+        };
+        let own = rows(loaded, spec, &timing, &core.measured(), bound);
+        self.rows.extend(own);
+    }
+
+    /// The rows of a leg.
+    fn of_leg(&mut self, loaded: &Loaded, leg: &Leg<'_>, bound: &Bound<'_>) {
+        let measured = leg.measured();
+        if measured.iter().any(|m| m.seconds().any(|s| s <= 0.0)) {
+            let reason = Refusal::Skipped("its timestamps stand still".to_owned());
+            self.refused(&format!("{}: {}", loaded.name, leg.label), reason);
+            return;
+        }
+        let timing = Timing {
+            leg: &leg.label,
+            bands: leg.bands(),
+            vertices: leg.vertices.as_ref().map(|v| v.seconds.clone()),
+        };
+        let own = rows(loaded, leg.grid, &timing, &measured, bound);
+        self.rows.extend(own);
+    }
+}
+
 /// The spec on each sub-pixel grid with each set of samples.
 type Grids = BTreeMap<(u32, Samples), Grid>;
 
@@ -113,42 +154,13 @@ pub(super) fn scene(
         legs.extend(leg(one, (loaded, asked), &plan, options, &mut done));
         progress.step();
     }
-    progress.begin(&format!("{name}: the spec"), 1);
     let bound = Bound(ceilings);
-    match spec.whole() {
-        Some(run) => {
-            let core = Core::new(&loaded.scene, &plan, spec, run);
-            let timing = Timing {
-                leg: "spec",
-                bands: 1,
-                vertices: Some(vec![core.vertices]),
-            };
-            done.rows
-                .extend(rows(loaded, spec, &timing, &core.measured(), &bound));
-        }
-        None => done.skipped.push(format!(
-            "{name}: spec: {} fragments are more than a replay holds; {} rows of pixels are \
-             compared",
-            spec.fragments(),
-            spec.rows_compared()
-        )),
-    }
+    progress.begin(&format!("{name}: the spec"), 1);
+    done.of_core(loaded, &plan, spec, &bound);
     progress.step();
     measure(name, &mut legs, &mut done, progress);
     for leg in &legs {
-        let measured = leg.measured();
-        if measured.iter().any(|m| m.seconds().any(|s| s <= 0.0)) {
-            let reason = Refusal::Skipped("its timestamps stand still".to_owned());
-            done.refused(&format!("{name}: {}", leg.label), reason);
-            continue;
-        }
-        let timing = Timing {
-            leg: &leg.label,
-            bands: leg.bands(),
-            vertices: leg.vertices.as_ref().map(|v| v.seconds.clone()),
-        };
-        let own = rows(loaded, leg.grid, &timing, &measured, &bound);
-        done.rows.extend(own);
+        done.of_leg(loaded, leg, &bound);
     }
     Ok(done)
 }
