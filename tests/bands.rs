@@ -1,6 +1,9 @@
 //! Frames that an adapter cannot bind at once, or has no memory for, run in bands of
 //! rows, with the same result; what does not fit even so is refused by name.
 
+#[path = "bands/timed.rs"]
+mod timed;
+
 use triptych_gpu::abuffer::{self, Abuffer};
 use triptych_gpu::context::{self, Gpu};
 use triptych_gpu::error::GpuError;

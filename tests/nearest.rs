@@ -67,8 +67,10 @@ fn wrong(
     };
     let timed = Timed::new(&rasterizer, options, |prim| run.is_opaque(prim));
     let mut timed = timed.unwrap_or_else(|e| panic!("{e}"));
-    let lists = timed.build().unwrap_or_else(|e| panic!("{e}"));
-    let longest = certify(&lists).longest().expect("lists are sound");
+    let mut longest = None;
+    let built = timed.build(|_, lists| longest = certify(&lists).longest());
+    built.unwrap_or_else(|e| panic!("{e}"));
+    let longest = longest.expect("lists are sound");
     timed
         .follow(longest, layers)
         .unwrap_or_else(|e| panic!("{e}"));

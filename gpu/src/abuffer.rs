@@ -18,7 +18,7 @@ use crate::raster::{Attempts, Rasterizer};
 pub use attempt::STEPS;
 pub(crate) use attempt::dispatches;
 use attempt::{Done, Run, Tried};
-pub use buffers::PROGRESS;
+pub use buffers::{NODE, PROGRESS, bytes};
 pub use stages::{Stage, Stages};
 pub use timed::{KEPT_MAX, Part, Timed, can_keep, with_layers};
 

@@ -14,8 +14,10 @@ fn clear_lists(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    atomicStore(&opaque_key[id.x], NOTHING);
-    atomicStore(&opaque_prim[id.x], NOTHING);
+    for (var s = 0u; s < frame.samples; s += 1u) {
+        atomicStore(&opaque_key[frame.samples * id.x + s], NOTHING);
+        atomicStore(&opaque_prim[frame.samples * id.x + s], NOTHING);
+    }
     atomicStore(&heads[id.x], EOL);
     if id.x == 0u {
         atomicStore(&counter, 0u);

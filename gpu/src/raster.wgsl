@@ -32,5 +32,9 @@ fn cover(@builtin(global_invocation_id) id: vec3<u32>) {
 
 @fragment
 fn cover_fragment(drawn: Drawn) {
-    append(fragment_of(drawn));
+    let fragment = fragment_of(drawn);
+    // What lies in no row of the band was not asked for.
+    if fragment.pixel < band_pixels() {
+        append(fragment);
+    }
 }

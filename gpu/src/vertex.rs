@@ -1,6 +1,7 @@
 //! Vertex stages on the device: transform, clip, snap, in batches of triangles.
 
 mod stages;
+mod timed;
 
 use std::time::Duration;
 
@@ -11,6 +12,7 @@ use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
 use stages::Stages;
+pub use timed::Timed;
 
 /// Triangles of one batch: their slots take 72 MiB, within the 128 MiB that
 /// WebGPU lets every kernel bind.

@@ -6,32 +6,41 @@
 //! the `n` nearest layers. *Insertion* walks each list once, as it was built, and keeps
 //! the `n` nearest in an array (`nearest_layers`). *Sort* sorts the lists and stops
 //! after `n` layers; with all of them this is what a replay runs, stages sort and
-//! resolve. *Tiles* are stages bin, jagged and shade, on the legs with a compute rasteriser. Not timed: transfers, compilation, and the vertex stages.
+//! resolve. *Tiles* are stages bin, jagged and shade, on the legs with a compute rasteriser. Other
+//! techniques are in `rivals.rs`. The vertex stages are timed by themselves, and a frame from its
+//! vertices on is both. Not timed: transfers and compilation.
 //!
 //! Every round runs every leg and every variant once, so that whatever slows a machine
 //! down for a while slows all of them. Before the first that counts come [`WARM_UP`]
-//! rounds, and more of them until each adapter was at work for [`WARM_UP_WORK`]. A board's
-//! clocks fall while the spec has its turn, so it is at work for [`AWAKE`] before each of
-//! its own. GPU times are the device's own timestamps. No picture is timed that was not
+//! rounds, and more of them until each adapter was at work for [`WARM_UP_WORK`] by its own clock. A
+//! board's clocks fall while others have their turn, so it is at work for [`AWAKE`] before each of
+//! its own. The spec runs once, before the rounds. GPU times are the device's own timestamps. No picture is timed that was not
 //! compared with the spec's, inside the spec's bound, before the rounds and after them.
 
 pub mod ceiling;
 pub mod counts;
 pub mod csv;
 pub mod error;
+pub mod full;
 mod gpu;
 pub mod grid;
 pub mod ldm;
 pub mod legs;
 pub mod machine;
 pub mod markdown;
+mod method;
+pub mod paper;
+mod pieces;
 mod progress;
 mod reference;
+mod rivals;
+mod rows;
 pub mod rsm;
 mod run;
 mod scene;
 mod spec;
 pub mod spread;
+mod station;
 pub mod svg;
 pub mod table;
 mod tiles;
@@ -43,12 +52,16 @@ use serde::{Deserialize, Serialize};
 
 pub use ceiling::Ceilings;
 pub use machine::Machine;
+pub use method::Method;
 pub use progress::Progress;
 pub use run::{Options, Outcome, named, run};
 pub use spread::Spread;
 
 /// Rounds before the first that counts, at least.
 pub const WARM_UP: u32 = 2;
+
+/// Rounds that count, unless a number is asked for.
+pub const RUNS: u32 = 21;
 
 /// How long each adapter is at work on a scene before the first round that counts, at
 /// least.
@@ -82,29 +95,6 @@ pub struct Bench {
     pub remarks: Vec<String>,
 }
 
-/// How the nearest layers are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// One walk over the list as it was built.
-    Insertion,
-    /// The sorted list, up to the last layer that is shown.
-    Sort,
-    /// Lists laid out by tiles, sorted while they are blended.
-    Tiles,
-}
-
-impl Method {
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Insertion => "insertion",
-            Self::Sort => "sort",
-            Self::Tiles => "tiles",
-        }
-    }
-}
-
 /// One leg, one number of layers, one method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -112,6 +102,8 @@ pub struct Row {
     pub scene: String,
     /// Pixels in a row, and rows.
     pub size: [u32; 2],
+    /// Samples of a pixel.
+    pub samples: u32,
     /// Fragments in lists.
     pub fragments: u64,
     /// Fragments of the longest list.
@@ -126,8 +118,12 @@ pub struct Row {
     pub layers: u32,
     /// Whether these are all that any list has.
     pub all: bool,
-    /// Milliseconds of a frame.
+    /// Rounds that counted.
+    pub runs: u32,
+    /// Milliseconds of a frame from its snapped triangles on.
     pub time: Spread,
+    /// The same from its vertices on, if that was measured.
+    pub frame: Option<Spread>,
     /// Times of a round over the same leg's of all layers by sorting, in that round.
     pub ratio: Spread,
     /// Median milliseconds of each part of a frame.
@@ -136,8 +132,12 @@ pub struct Row {
     pub psnr: Option<f64>,
     /// The largest difference of a channel from the exact picture.
     pub largest: f64,
-    /// Bytes that the technique holds, [`counts`].
+    /// Bytes that the technique holds at most.
     pub memory: u64,
+    /// Bytes of a stored fragment; `None`: it stores none.
+    pub of_fragment: Option<u64>,
+    /// Bands of rows that it is made in, one after another in the same buffers.
+    pub bands: u32,
     /// Fragments per second.
     pub fragments_per_second: f64,
     /// What bounds it: `bytes` or `atomics`.
@@ -152,13 +152,21 @@ impl Bench {
     /// The fastest method of each leg and number of layers: the legs in the order of the
     /// rows, and each leg's from one layer to all.
     pub fn fastest(&self) -> impl Iterator<Item = &Row> {
+        self.shown().filter(|row| row.method.has_layers())
+    }
+
+    /// The same, and after each leg's all techniques that do not depend on that number.
+    pub fn shown(&self) -> impl Iterator<Item = &Row> {
         let faster = |row: &Row| {
             let rival = |other: &&Row| {
                 (&other.scene, &other.leg, other.layers) == (&row.scene, &row.leg, row.layers)
                     && other.method != row.method
+                    && other.method.has_layers()
             };
             let mut rivals = self.rows.iter().filter(rival);
-            rivals.all(|other| (row.time.median, row.method) < (other.time.median, other.method))
+            !row.method.has_layers()
+                || rivals
+                    .all(|other| (row.time.median, row.method) < (other.time.median, other.method))
         };
         let mut fastest: Vec<&Row> = self.rows.iter().filter(|row| faster(row)).collect();
         let (scenes, legs) = (self.scenes(), self.legs());
@@ -167,7 +175,9 @@ impl Bench {
             (
                 place(&scenes, &row.scene),
                 place(&legs, &row.leg),
+                !row.method.has_layers(),
                 row.layers,
+                row.method,
             )
         });
         fastest.into_iter()

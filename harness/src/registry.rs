@@ -90,6 +90,18 @@ pub const MEASURED: &[Measured] = &[
         spec: None,
     },
     Measured {
+        file: "fans",
+        over: Some("vertex"),
+        entries: &["fan_count", "fan_snap"],
+        spec: None,
+    },
+    Measured {
+        file: "fan_scan",
+        over: None,
+        entries: &["fan_parts", "fan_sums", "fan_offsets"],
+        spec: None,
+    },
+    Measured {
         file: "hbao",
         over: None,
         entries: &["prepare", "horizons", "denoise"],

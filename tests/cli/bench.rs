@@ -9,7 +9,7 @@ use triptych_harness::bench::csv::COLUMNS;
 use super::{Place, Ran, deep, repository};
 
 /// A file of results as rows of named values.
-fn rows(text: &str) -> Vec<BTreeMap<&'static str, &str>> {
+pub(super) fn rows(text: &str) -> Vec<BTreeMap<&'static str, &str>> {
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some(COLUMNS.join(",").as_str()), "the header");
     let mut rows = Vec::new();
@@ -214,6 +214,8 @@ fn mistakes_are_one_line() {
     for wrong in [
         &["bench", "abuffer", "deep", "--runs", "0"][..],
         &["bench", "abuffer", "deep", "--layers", "1,0"],
+        &["bench", "abuffer", "deep", "--samples", "3"],
+        &["bench", "abuffer", "deep", "--budget", "0"],
         &["bench", "nosuch"],
         &["bench", "abuffer", "nosuch"],
     ] {
@@ -272,13 +274,18 @@ fn files_that_cannot_be_written_are_told_first() {
     assert!(!left.exists(), "nothing was measured");
 }
 
-/// As a bundle may be: of the three scenes that are measured without a pattern it has one.
+/// As a bundle may be: it has one of the scenes that are measured without a pattern.
 #[test]
 fn scenes_that_are_not_here_are_named() {
     let place = Place::new("bench-partial");
     place.write("corpus/abuffer/furball/scene.toml", &deep());
     let command = ["bench", "abuffer", "--runs", "1", "--adapter", "llvmpipe"];
-    let ran = place.run(&command).expect(0);
+    let mut command = place.command(&command);
+    let ran = Ran::of(command.env("TRIPTYCH_NATIVE", place.root.join("native"))).expect(0);
+    for name in ["teapot: mesh teapot.obj", "dragon: mesh dragon.ply.gz"] {
+        let words = format!("not measured: paper/{name} is not there");
+        assert!(ran.stdout.contains(&words), "{}", ran.stdout);
+    }
     for name in ["abuffer/sponza", "abuffer/dragon-full"] {
         let words = format!("not measured: {name}: not in this corpus\n");
         assert!(ran.stdout.contains(&words), "{}", ran.stdout);

@@ -20,6 +20,7 @@ mod output;
 mod outside;
 mod results;
 mod stress;
+mod techniques;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -22,6 +22,17 @@ const PIXELS_MAX: u64 = 65_535 * crate::frame::WORKGROUP as u64;
 /// Bytes of a sample's colour in the picture.
 const COLOUR: u64 = 16;
 
+/// Bytes of a fragment in a list: node and colour.
+pub const NODE: u64 = 16 + 16;
+
+/// Bytes of the buffers of so many pixels with so many samples each, and of nodes; what sorts the
+/// lists keeps its progress as well.
+pub fn bytes([pixels, samples]: [u32; 2], nodes: u32, sorts: bool) -> u64 {
+    let progress = if sorts { PROGRESS } else { 0 };
+    let pixel = 4 + u64::from(samples) * (2 * 4 + COLOUR) + progress;
+    pixel * u64::from(pixels) + NODE * u64::from(nodes)
+}
+
 /// Heads, opaque surfaces, picture and progress of a pixel; a node and its colour.
 pub(super) fn need(gpu: &Gpu) -> Need {
     need_of(gpu, 1)
@@ -35,7 +46,7 @@ pub(super) fn need_of(gpu: &Gpu, samples: u32) -> Need {
     Need {
         what: "build",
         pixel: 4 + samples * (2 * 4 + COLOUR) + PROGRESS,
-        node: 16 + 16,
+        node: NODE,
         pixels_max: PIXELS_MAX.min(bindable),
     }
 }

@@ -1,85 +1,40 @@
-//! The A-buffer of a whole target, set up once and run many times, each part timed.
+//! The A-buffer of a target, set up once and run many times, each part timed.
+//!
+//! Where an adapter binds less than all lists take, or the memory that it may use is less, the
+//! target is made in bands of rows, one after another in the same buffers (section 5: "allocate a
+//! smaller set of buffers and render the scene in tiles"). The time of a part is then that of all
+//! bands.
+
+mod part;
+mod strip;
 
 use triptych_spec::abuffer::Lists;
 
-use super::attempt::dispatches;
+use super::Options;
 use super::buffers::{self, Buffers};
-use super::{Options, STEPS};
 use crate::error::GpuError;
-use crate::frame::{Band, Frame};
-use crate::raster::{Rasterizer, Ready};
+use crate::frame::Band;
+use crate::raster::{Attempts, Rasterizer, Ready};
 use crate::timer::Timer;
-use crate::wgsl::Sources;
-
-/// The file that ships the kernels of the nearest layers.
-const FILE: &str = "nearest";
-
-/// Most layers that [`Part::Nearest`] keeps: two words each in an invocation's own
-/// memory, of which drivers have little.
-pub const KEPT_MAX: u32 = 64;
-
-/// A part of a frame, which is timed by itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Empties lists and surfaces.
-    Clear,
-    /// Both passes of stage opaque.
-    Opaque,
-    /// Stage build.
-    Build,
-    /// The picture of so many nearest layers, from the lists as they were built.
-    Nearest(u32),
-    /// Stage sort.
-    Sort,
-    /// The picture of so many nearest layers, from the sorted lists.
-    NearestSorted(u32),
-    /// Stage resolve: the picture of all layers, from the sorted lists.
-    Resolve,
-}
-
-impl Part {
-    /// Whether it makes a picture.
-    pub fn draws(self) -> bool {
-        matches!(
-            self,
-            Self::Nearest(_) | Self::NearestSorted(_) | Self::Resolve
-        )
-    }
-}
+pub use part::{KEPT_MAX, Part, can_keep, with_layers};
+use strip::Strip;
 
 /// A frame that is set up. It never overflows: the capacity is that of the spec's count.
 pub struct Timed<'r, 'g> {
     rasterizer: &'r Rasterizer<'g>,
     buffers: Buffers,
-    frame: Frame,
-    parts: Vec<(Part, Vec<Ready>)>,
-    built: usize,
-}
-
-/// The kernels that ship, and those that show so many layers.
-pub fn with_layers(sources: Sources, layers: &[u32]) -> Sources {
-    let ours = |(name, _): &(&str, &str)| *name == FILE;
-    let text = sources.files().find(ours).map(|(_, text)| text.to_owned());
-    let text = text.unwrap_or_default();
-    layers.iter().fold(sources, |sources, n| {
-        let text = text.replacen("LAYERS: u32 = 1u;", &format!("LAYERS: u32 = {n}u;"), 1);
-        sources.with(file(*n), text)
-    })
-}
-
-fn file(layers: u32) -> String {
-    format!("{FILE}-{layers}")
-}
-
-/// Whether every list of up to `longest` nodes is served by [`Part::Nearest`] in one
-/// dispatch: a step for each node, and one for each that an insertion moves.
-pub fn can_keep(layers: u32, longest: u32) -> bool {
-    let [layers, longest] = [layers, longest].map(u64::from);
-    layers <= KEPT_MAX.into() && longest * (1 + layers.min(longest)) + layers <= STEPS
+    strips: Vec<Strip>,
+    /// Band and part of all that runs, in this order.
+    spans: Vec<[usize; 2]>,
+    /// The parts, of which some may have no passes in some bands.
+    parts: Vec<Part>,
+    /// Pixels, their samples, and nodes that there is room for.
+    room: ([u32; 2], u32),
 }
 
 impl<'r, 'g> Timed<'r, 'g> {
-    /// Sets up what builds the lists, with room for exactly `options.capacity` nodes.
+    /// Sets up what builds the lists of a whole target at once, with room for exactly
+    /// `options.capacity` nodes.
     ///
     /// # Errors
     /// A target that does not fit in one band, by name; WGSL errors; what the device
@@ -91,136 +46,172 @@ impl<'r, 'g> Timed<'r, 'g> {
     ) -> Result<Self, GpuError> {
         let (gpu, size) = (rasterizer.gpu, rasterizer.size);
         let band = Band::whole(size);
-        let capacity = options.capacity.unwrap_or(0);
-        let (pixels, need) = (band.pixels(size), buffers::need(gpu));
-        if u64::from(pixels) > need.pixels_max {
+        let need = buffers::need_of(gpu, rasterizer.samples.count());
+        let pixels = u64::from(band.pixels(size));
+        if pixels > need.pixels_max {
             return Err(GpuError::Limit {
                 adapter: gpu.name.clone(),
                 what: "a whole target",
-                needed: pixels.into(),
+                needed: pixels,
                 limit: need.pixels_max,
             });
         }
-        let [r, g, b] = options.background;
-        let frame = Frame {
-            capacity,
-            depth_test: u32::from(options.depth_test),
-            background: [r, g, b, 1.0],
-            ..rasterizer.frame(band)
-        };
+        let bands = [(band, options.capacity.unwrap_or(0))];
+        Self::over(rasterizer, options, &bands, is_opaque)
+    }
+
+    /// The same in as many bands as it takes, whose buffers hold no more than `budget` bytes
+    /// together, or what is left if the device has less. There are `rows` nodes in each row.
+    ///
+    /// # Errors
+    /// A single row that does not fit, by name; WGSL errors; what the device refuses.
+    pub fn in_bands(
+        rasterizer: &'r Rasterizer<'g>,
+        options: Options<'_>,
+        rows: &[u32],
+        budget: u64,
+        is_opaque: impl Fn(u32) -> bool,
+    ) -> Result<Self, GpuError> {
+        let (gpu, size) = (rasterizer.gpu, rasterizer.size);
+        let need = buffers::need_of(gpu, rasterizer.samples.count());
+        let mut budget = budget;
+        loop {
+            let attempts = Attempts::new(gpu, size, need, None).within(budget);
+            let bands: Vec<(Band, u32)> = attempts.with_rows(rows.iter().copied()).collect();
+            let many = bands.iter().any(|(band, _)| band.rows > 1);
+            match Self::over(rasterizer, options, &bands, &is_opaque) {
+                // It has less than that: in smaller bands, down to single rows.
+                Err(GpuError::Memory { .. }) if many => budget /= 2,
+                made => return made,
+            }
+        }
+    }
+
+    fn over(
+        rasterizer: &'r Rasterizer<'g>,
+        options: Options<'_>,
+        bands: &[(Band, u32)],
+        is_opaque: impl Fn(u32) -> bool,
+    ) -> Result<Self, GpuError> {
+        let gpu = rasterizer.gpu;
+        let rows = bands.iter().map(|(band, _)| band.rows).max().unwrap_or(0);
+        let pixels = rows * rasterizer.size.width;
+        let capacity = bands.iter().map(|(_, nodes)| *nodes).max().unwrap_or(0);
+        let samples = rasterizer.samples.count();
         let fault = rasterizer.kernels.fault();
-        let buffers = Buffers::empty(gpu, pixels, capacity, fault)?;
-        let named = buffers.named();
-        let mut parts = Vec::new();
-        let clear = rasterizer.ready_per_pixel(FILE, "clear_lists", frame, &named)?;
-        parts.push((Part::Clear, vec![clear]));
-        if options.opaque {
-            let work = rasterizer.work(band, &is_opaque)?;
-            let mut passes = Vec::new();
-            for stage in ["opaque_nearest", "opaque_first"] {
-                passes.extend(rasterizer.ready("abuffer", stage, frame, &work, &named)?);
-            }
-            parts.push((Part::Opaque, passes));
-        }
-        if options.lists {
-            let work = rasterizer.work(band, |prim| !is_opaque(prim))?;
-            let passes = rasterizer.ready("abuffer", "build", frame, &work, &named)?;
-            parts.push((Part::Build, passes));
-        }
-        // What lies outside the picture has no passes, hence no times.
-        parts.retain(|(_, passes)| !passes.is_empty());
-        Ok(Self {
+        let mut timed = Self {
             rasterizer,
-            frame,
-            built: parts.len(),
-            parts,
-            buffers,
-        })
-    }
-
-    /// Runs what builds the lists, and gives them to be certified.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn build(&self) -> Result<Lists, GpuError> {
-        for part in 0..self.built {
-            self.run(part)?;
+            buffers: Buffers::sampled(gpu, [pixels, samples], capacity, fault)?,
+            strips: Vec::new(),
+            spans: Vec::new(),
+            parts: Vec::new(),
+            room: ([pixels, samples], capacity),
+        };
+        for at in bands {
+            let strip = Strip::new(rasterizer, &options, *at, &timed.buffers, &is_opaque)?;
+            timed.strips.push(strip);
         }
-        self.lists()
+        timed.number();
+        Ok(timed)
     }
 
-    /// Runs all up to stage sort, which [`Self::follow`] set up, and gives the lists to be
-    /// compared.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn sorted(&self) -> Result<Lists, GpuError> {
-        for (at, part) in self.parts().enumerate() {
-            self.run(at)?;
-            if part == Part::Sort {
-                break;
+    /// Numbers what runs: parts without passes have no times.
+    fn number(&mut self) {
+        self.spans.clear();
+        self.parts.clear();
+        for (band, strip) in self.strips.iter().enumerate() {
+            let own = strip.parts.iter().enumerate();
+            let own = own.filter(|(_, (_, passes))| !passes.is_empty());
+            self.spans.extend(own.map(|(part, _)| [band, part]));
+        }
+        let Some(first) = self.strips.first() else {
+            return;
+        };
+        for (at, (part, _)) in first.parts.iter().enumerate() {
+            if self.spans.iter().any(|span| span[1] == at) {
+                self.parts.push(*part);
             }
         }
-        self.lists()
     }
 
-    /// The lists as they are.
-    fn lists(&self) -> Result<Lists, GpuError> {
-        let pixels = self.frame.width * self.frame.rows;
+    /// How many bands there are.
+    pub fn bands(&self) -> usize {
+        self.strips.len()
+    }
+
+    /// Bytes of the buffers, but for the triangles: those of the largest band, whether or not its
+    /// lists are sorted.
+    pub fn bytes(&self, sorts: bool) -> u64 {
+        buffers::bytes(self.room.0, self.room.1, sorts)
+    }
+
+    /// Runs what builds the lists, and gives those of each band to be certified.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn build(&self, mut show: impl FnMut(Band, Lists)) -> Result<(), GpuError> {
+        for strip in &self.strips {
+            for (_, passes) in strip.built() {
+                self.run(passes)?;
+            }
+            show(strip.band, self.lists(strip)?);
+        }
+        Ok(())
+    }
+
+    /// Runs all up to stage sort, which [`Self::follow`] set up, and gives the lists of each band
+    /// to be compared.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn sorted(&self, mut show: impl FnMut(Band, Lists)) -> Result<(), GpuError> {
+        for strip in &self.strips {
+            for (part, passes) in &strip.parts {
+                self.run(passes)?;
+                if *part == Part::Sort {
+                    break;
+                }
+            }
+            show(strip.band, self.lists(strip)?);
+        }
+        Ok(())
+    }
+
+    /// The lists of a band as they are.
+    fn lists(&self, strip: &Strip) -> Result<Lists, GpuError> {
+        let pixels = strip.band.pixels(self.rasterizer.size);
         let gpu = self.rasterizer.gpu;
-        self.buffers.lists(gpu, pixels, self.frame.capacity)
+        self.buffers.lists(gpu, pixels, strip.frame.capacity)
     }
 
     /// Sets up what follows the lists, of which the longest has `longest` nodes for
     /// certain: each number of layers from the lists as they are, where that is possible;
-    /// each below that length from the sorted ones; and all.
+    /// each below that length from the sorted ones; and all. With several samples a pixel, only
+    /// all.
     ///
     /// # Errors
     /// WGSL errors; what the device refuses.
     pub fn follow(&mut self, longest: u32, layers: &[u32]) -> Result<(), GpuError> {
-        self.parts.truncate(self.built);
-        for n in layers.iter().filter(|n| can_keep(**n, longest)) {
-            let pass = self.pass(&file(*n), "nearest_layers")?;
-            self.parts.push((Part::Nearest(*n), vec![pass]));
+        for strip in &mut self.strips {
+            strip.follow(self.rasterizer, &self.buffers, longest, layers)?;
         }
-        let sort = self.until_done("sort", longest)?;
-        self.parts.push((Part::Sort, sort));
-        for n in layers
-            .iter()
-            .filter(|n| **n < longest && u64::from(**n) <= STEPS)
-        {
-            let pass = self.pass(&file(*n), "nearest_layers_sorted")?;
-            self.parts.push((Part::NearestSorted(*n), vec![pass]));
-        }
-        let resolve = self.until_done("resolve", longest)?;
-        self.parts.push((Part::Resolve, resolve));
+        self.number();
         Ok(())
-    }
-
-    fn pass(&self, file: &str, stage: &str) -> Result<Ready, GpuError> {
-        let buffers = self.buffers.named();
-        self.rasterizer
-            .ready_per_pixel(file, stage, self.frame, &buffers)
-    }
-
-    /// As many dispatches of a stage as lists of that length may take; those that come
-    /// after the last do nothing.
-    fn until_done(&self, stage: &str, longest: u32) -> Result<Vec<Ready>, GpuError> {
-        let mut passes = vec![self.pass(FILE, "clear_progress")?];
-        for _ in 0..dispatches(longest) {
-            passes.push(self.pass("abuffer", stage)?);
-        }
-        Ok(passes)
     }
 
     /// The parts, in the order in which they run.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
-        self.parts.iter().map(|(part, _)| *part)
+        self.parts.iter().copied()
     }
 
-    fn run(&self, part: usize) -> Result<(), GpuError> {
+    /// How many spans a timer of them needs.
+    pub fn spans(&self) -> u32 {
+        u32::try_from(self.spans.len()).expect("a few parts of each band")
+    }
+
+    fn run(&self, passes: &[Ready]) -> Result<(), GpuError> {
         let mut encoder = self.rasterizer.gpu.encoder();
-        for pass in &self.parts[part].1 {
+        for pass in passes {
             pass.record(self.rasterizer, &mut encoder, None);
         }
         self.rasterizer.gpu.submit(encoder)
@@ -232,42 +223,66 @@ impl<'r, 'g> Timed<'r, 'g> {
     /// # Errors
     /// Whatever the device reports.
     pub fn pictures(&self, mut show: impl FnMut(Part, Vec<[f32; 3]>)) -> Result<(), GpuError> {
-        let pixels = (self.frame.width * self.frame.rows) as usize;
-        for (at, part) in self.parts().enumerate() {
-            self.run(at)?;
-            if part.draws() {
-                let gpu = self.rasterizer.gpu;
-                let picture: Vec<[f32; 4]> = gpu.read(&self.buffers.picture, pixels)?;
-                show(
-                    part,
-                    picture.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect(),
-                );
+        let gpu = self.rasterizer.gpu;
+        let mut all: Vec<(Part, Vec<[f32; 3]>)> = Vec::new();
+        for strip in &self.strips {
+            let stride = strip.frame.samples as usize;
+            let count = strip.band.pixels(self.rasterizer.size) as usize * stride;
+            for (part, passes) in &strip.parts {
+                self.run(passes)?;
+                if !part.draws() {
+                    continue;
+                }
+                let picture: Vec<[f32; 4]> = gpu.read(&self.buffers.picture, count)?;
+                let pixels = picture
+                    .iter()
+                    .step_by(stride)
+                    .map(|[r, g, b, _]| [*r, *g, *b]);
+                match all.iter_mut().find(|(other, _)| other == part) {
+                    Some((_, picture)) => picture.extend(pixels),
+                    None => all.push((*part, pixels.collect())),
+                }
             }
+        }
+        for (part, picture) in all {
+            show(part, picture);
         }
         Ok(())
     }
 
-    /// Runs every part once, and gives the seconds of each. Parts that may come in any
-    /// order change places from round to round, so that none is always first.
+    /// Runs every part once, and gives the seconds of each, over all bands. Parts that may come
+    /// in any order change places from round to round, so that none is always first.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub fn time(&self, timer: &Timer, round: u32) -> Result<Vec<f64>, GpuError> {
         let gpu = self.rasterizer.gpu;
         let order = self.order(round);
-        timer.time(gpu, order.into_iter(), |span, encoder, queries| {
-            let passes = &self.parts[span as usize].1;
+        let all = timer.time(gpu, order.into_iter(), |span, encoder, queries| {
+            let [band, part] = self.spans[span as usize];
+            let passes = &self.strips[band].parts[part].1;
             for (at, pass) in passes.iter().enumerate() {
                 let writes = queries.and_then(|q| q.writes(span, at, passes.len()));
                 pass.record(self.rasterizer, encoder, writes);
             }
-        })
+        })?;
+        let mut seconds = vec![0.0; self.parts.len()];
+        for ([band, part], taken) in self.spans.iter().zip(all) {
+            let part = self.strips[*band].parts[*part].0;
+            let at = self.parts.iter().position(|own| *own == part);
+            seconds[at.expect("it has passes, so it is listed")] += taken;
+        }
+        Ok(seconds)
     }
 
-    /// The parts by their numbers: neighbours of one kind rotate.
+    /// What runs, by its numbers: neighbours of one kind in a band rotate.
     fn order(&self, round: u32) -> Vec<u32> {
-        let mut order: Vec<u32> = (0..).zip(&self.parts).map(|(at, _)| at).collect();
-        let kind = |at: &u32| std::mem::discriminant(&self.parts[*at as usize].0);
+        let mut order: Vec<u32> = (0..self.spans()).collect();
+        let kind = |at: &u32| {
+            let [band, part] = self.spans[*at as usize];
+            let part = self.strips[band].parts[part].0;
+            (band, std::mem::discriminant(&part))
+        };
         for same in order.chunk_by_mut(|a, b| kind(a) == kind(b)) {
             let by = round as usize % same.len();
             same.rotate_left(by);

@@ -68,6 +68,12 @@ impl Attempts {
         }
     }
 
+    /// The same with attempts at no more than so many bytes.
+    #[must_use]
+    pub fn within(self, memory: u64) -> Self {
+        Self { memory, ..self }
+    }
+
     /// The same where the number of nodes in each row is known: every attempt has room
     /// for exactly its own.
     #[must_use]

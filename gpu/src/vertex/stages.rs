@@ -17,7 +17,7 @@ use crate::kernel::{Kernels, Pipeline};
 pub(super) const VERTICES: u32 = 65_535 * WORKGROUP;
 
 /// Bytes of a triangle's slots.
-const SLOTS: u64 = 16 * CORNERS_MAX as u64;
+pub(super) const SLOTS: u64 = 16 * CORNERS_MAX as u64;
 
 /// A vertex as the kernel reads it.
 #[repr(C)]
@@ -65,22 +65,9 @@ impl<'g> Stages<'g> {
         })
     }
 
-    /// The only place where the matrices are rounded: composed in f64, then to f32.
+    /// Stage transform, over all vertices.
     pub(super) fn transform(&mut self, scene: &Scene) -> Result<Vec<[f32; 4]>, GpuError> {
-        let to_pixels = viewport(scene.size);
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "the one rounding of an entry that the bound allows for"
-        )]
-        let rows = |m| to_pixels.times(m).rows.map(|row| row.map(|v| v as f32));
-        let matrices: Vec<[[f32; 4]; 4]> = scene.instances.iter().map(rows).collect();
-        let vertex = |v: &triptych_spec::scene::Vertex| Vertex {
-            position: v.position,
-            instance: v.instance,
-        };
-        let vertices: Vec<Vertex> = scene.vertices.iter().map(vertex).collect();
-        let matrices = self.gpu.upload("matrices", &matrices)?;
-        let vertices = self.gpu.upload("vertices", &vertices)?;
+        let [matrices, vertices] = inputs(self.gpu, scene)?;
         let buffers = [
             ("matrices", &matrices),
             ("vertices", &vertices),
@@ -216,4 +203,25 @@ impl<'g> Stages<'g> {
             limit,
         }
     }
+}
+
+/// Matrices and vertices on the device. The only place where the matrices are rounded: composed in
+/// f64, then to f32.
+pub(super) fn inputs(gpu: &Gpu, scene: &Scene) -> Result<[wgpu::Buffer; 2], GpuError> {
+    let to_pixels = viewport(scene.size);
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the one rounding of an entry that the bound allows for"
+    )]
+    let rows = |m| to_pixels.times(m).rows.map(|row| row.map(|v| v as f32));
+    let matrices: Vec<[[f32; 4]; 4]> = scene.instances.iter().map(rows).collect();
+    let vertex = |v: &triptych_spec::scene::Vertex| Vertex {
+        position: v.position,
+        instance: v.instance,
+    };
+    let vertices: Vec<Vertex> = scene.vertices.iter().map(vertex).collect();
+    Ok([
+        gpu.upload("matrices", &matrices)?,
+        gpu.upload("vertices", &vertices)?,
+    ])
 }

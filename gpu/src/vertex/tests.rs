@@ -153,3 +153,66 @@ fn a_scene_without_triangles_or_vertices_gives_nothing() {
         assert_eq!(run.primitives.prims, [[0; 3]; 0]);
     }
 }
+
+/// Rows of pixels whose middles lie within a triangle's height.
+fn rows_between(corners: &[[i32; 3]; 3], bits: u32, height: u32) -> u32 {
+    let y = corners.map(|corner| corner[1]);
+    let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+    let within = |row: &i32| (low..=high).contains(&((row << bits) + (1 << (bits - 1))));
+    let rows = 0..height.cast_signed();
+    u32::try_from(rows.filter(within).count()).expect("a target's")
+}
+
+/// Whether corners and rows of what is timed are what the host makes of the same stages.
+fn as_the_host(gpu: &Gpu, kernels: &Kernels, scene: &Scene) -> [bool; 2] {
+    let must = run(gpu, kernels, scene, 8, Given::Nothing, false).expect("small");
+    let must = must.primitives;
+    let corner = |at: u32| must.snapped[at as usize];
+    let corners: Vec<[[i32; 3]; 3]> = must.prims.iter().map(|p| p.map(corner)).collect();
+    let grid = (8, triptych_spec::raster::Samples::ONE);
+    let timed = Timed::new(gpu, kernels, scene, grid, true).expect("small");
+    let (fanned, starts) = timed.made().expect("it runs");
+    let mut sum = 0;
+    let mut begins = Vec::new();
+    for opaque in [false, true] {
+        for (corners, source) in corners.iter().zip(&must.source) {
+            begins.push(sum);
+            let own = scene.triangles[*source as usize].is_opaque() == opaque;
+            sum += u32::from(own) * rows_between(corners, 8, scene.size.height);
+        }
+    }
+    assert!(sum > 300, "{sum} rows");
+    [fanned == corners, starts == begins]
+}
+
+/// What is timed gives what the host makes of the same stages, triangle by triangle and row by
+/// row, with some triangles cut, some out of view, and every other opaque; and does not with a
+/// defect.
+#[test]
+fn fans_and_rows_are_made_without_the_host() {
+    let mut scene = spiral(300, 1);
+    for triangle in scene.triangles.iter_mut().step_by(2) {
+        triangle.colour[3] = 0.5;
+    }
+    let sources = Sources::shipped(false);
+    for (gpu, kernels) in devices(&sources) {
+        assert_eq!(
+            as_the_host(&gpu, &kernels, &scene),
+            [true; 2],
+            "{}",
+            gpu.name
+        );
+    }
+    for (find, replace, wrong) in [
+        ("        b = c;\n", "", 0),
+        ("colour.a >= 1.0", "false", 1),
+        ("max(bottom - top + 1, 0)", "max(bottom - top, 0)", 1),
+    ] {
+        let patched = sources.patched("fans", find, replace);
+        let patched = patched.unwrap_or_else(|error| panic!("{error}"));
+        for (gpu, kernels) in devices(&patched) {
+            let seen = as_the_host(&gpu, &kernels, &scene);
+            assert!(!seen[wrong], "{find:?} is not seen on {}", gpu.name);
+        }
+    }
+}

@@ -32,6 +32,8 @@ const FILES: &[(&str, &str)] = shipped![
     "drawn_samples",
     "dual",
     "entry",
+    "fan_scan",
+    "fans",
     "frame",
     "grid",
     "hbao",

@@ -20,16 +20,20 @@
 //! | place: number and triangle, opaque key; length written; list read and placed, row | `40 B + 44 P` | |
 //! | fill: number and triangle, opaque key; list, row, how far it is filled; entry | `40 B + 32 P + 8 F` | |
 //! | shade: list, row, surface, picture; entries; colours shown | `40 P + 8 F + 16 S(n)` | |
+//! | others, each time: triangle with colour, keys, picture; then surface, picture | `60 T + 12 C + 16 P`; `24 P` | |
 //!
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
 //! triangles is far from this bound on purpose. The spec is held to the same bytes.
 
 use triptych_gpu::abuffer::Part;
-use triptych_spec::abuffer::NOTHING;
+use triptych_gpu::raster::SATURATED;
+use triptych_spec::abuffer::{NOTHING, Opaque, opaque, visible};
 use triptych_spec::raster;
+use triptych_spec::scene::Scene;
+use triptych_spec::vertex::Primitives;
 
-use super::Method;
-use crate::replay::spec::SpecRun;
+use crate::plan::Plan;
+use crate::replay::spec::{SpecRun, faces};
 
 /// What the formulas are made of, on one sub-pixel grid.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -94,6 +98,63 @@ impl Counts {
         }
     }
 
+    /// Of a scene with any number of fragments, which are counted and not kept; and how many the
+    /// lists of each row of pixels have.
+    ///
+    /// # Errors
+    /// One line for more fragments in lists than a word counts.
+    pub fn counted(
+        scene: &Scene,
+        primitives: &Primitives,
+        plan: &Plan,
+    ) -> Result<(Self, Vec<u32>), String> {
+        let faces = faces(scene, primitives);
+        let surfaces = match plan.opaque {
+            true => opaque(scene, primitives),
+            false => Opaque::nothing(primitives),
+        };
+        let pixels = primitives.size.pixels();
+        let mut lists = vec![0_u32; pixels];
+        let (mut considered, mut opaque_fragments) = (0, 0);
+        raster::cover(primitives, |f| {
+            if faces[f.prim as usize][3] >= 1.0 {
+                opaque_fragments += 1;
+                return;
+            }
+            considered += 1;
+            let kept = !plan.depth_test || visible(primitives, &surfaces, &f) != 0;
+            lists[f.pixel as usize] += u32::from(kept);
+        });
+        let fragments: u64 = lists.iter().map(|list| u64::from(*list)).sum();
+        if fragments >= u64::from(SATURATED) {
+            return Err(format!(
+                "{fragments} fragments in lists, more than the {} that are counted",
+                SATURATED - 1
+            ));
+        }
+        let mut lengths = Vec::new();
+        for list in &lists {
+            let length = *list as usize;
+            if lengths.len() <= length {
+                lengths.resize(length + 1, 0);
+            }
+            lengths[length] += 1;
+        }
+        let rows = lists.chunks(primitives.size.width as usize);
+        let opaque_triangles = faces.iter().filter(|face| face[3] >= 1.0).count() as u64;
+        let counts = Self {
+            pixels: pixels as u64,
+            fragments,
+            considered,
+            opaque_fragments,
+            opaque_pixels: surfaces.prim.iter().filter(|p| **p != NOTHING).count() as u64,
+            transparent: faces.len() as u64 - opaque_triangles,
+            opaque: opaque_triangles,
+            lengths,
+        };
+        Ok((counts, rows.map(|row| row.iter().sum()).collect()))
+    }
+
     /// Fragments of the longest list.
     pub fn longest(&self) -> u32 {
         u32::try_from(self.lengths.len().saturating_sub(1)).unwrap_or(u32::MAX)
@@ -147,30 +208,54 @@ impl Counts {
         }
     }
 
-    /// Bytes that a GPU leg holds: triangles with colours; of each pixel head, opaque key
-    /// and triangle, and picture; node and colour of each fragment; sorting keeps its
-    /// progress beside them. Arrays of invocations are not in memory.
-    pub fn memory(&self, method: Method) -> u64 {
-        let progress = match method {
-            Method::Insertion => 0,
-            Method::Sort => 32 * self.pixels,
-            // What tiles hold is what their buffers take.
-            Method::Tiles => return 52 * (self.transparent + self.opaque),
-        };
-        52 * (self.transparent + self.opaque) + 28 * self.pixels + 32 * self.fragments + progress
+    /// What techniques beside lists must do, beside stage opaque: going through the triangles
+    /// `times` times, each time with the fragments' keys, and through the pixels.
+    pub fn gone_through(&self, times: u32) -> Work {
+        let triangles = 60 * self.transparent + 12 * self.considered;
+        Work {
+            bytes: u64::from(times) * (triangles + 16 * self.pixels) + 24 * self.pixels,
+            atomics: 0,
+        }
+    }
+
+    /// Bytes of the triangles with their colours.
+    pub fn triangles(&self) -> u64 {
+        52 * (self.transparent + self.opaque)
     }
 
     /// Bytes that the spec holds: triangles as above; of each pixel head, surface, offset
     /// and a picture of numbers with bounds; node and colour; the fragments in order.
     pub fn spec_memory(&self, layers: u32) -> u64 {
-        let triangles = 52 * (self.transparent + self.opaque);
-        triangles + 64 * self.pixels + 32 * self.fragments + 16 * self.shown(layers)
+        self.triangles() + 64 * self.pixels + 32 * self.fragments + 16 * self.shown(layers)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use triptych_gpu::abuffer;
+    use triptych_spec::vertex::primitives;
+
     use super::*;
+    use crate::corpus;
+    use crate::scene::load;
+
+    /// What is counted by itself is what lists have.
+    #[test]
+    fn fragments_are_counted_as_they_are_stored() {
+        for name in ["mixed", "msaa-mixed", "quads"] {
+            let file = corpus::root().join("abuffer").join(name).join("scene.toml");
+            let loaded = load(&file).unwrap_or_else(|e| panic!("{e}"));
+            let (scene, plan) = (&loaded.scene, Plan::new(&loaded.scene, true));
+            let prims = primitives(scene, 8);
+            let (counts, rows) = Counts::counted(scene, &prims, &plan).unwrap();
+            let run = SpecRun::new(scene, prims, &plan).unwrap();
+            assert_eq!(counts, Counts::of(&run), "{name}");
+            let width = scene.size.width as usize;
+            let ends = run.sorted.offsets.iter().step_by(width);
+            let must: Vec<u32> = ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect();
+            assert_eq!(rows, must, "{name}");
+        }
+    }
 
     /// Two empty pixels, one list of one, and two of five.
     fn counts() -> Counts {
@@ -203,8 +288,11 @@ mod tests {
         let tiles = 2 * (36 * 2 + 16 * 3) + 84 * 7 + 116 * 5 + 16 * 11 + 16 * 5;
         assert_eq!(counts.by_tiles(7, 2), must(tiles, 14));
         assert_eq!(counts.longest(), 5);
-        assert_eq!(counts.memory(Method::Insertion), 156 + 140 + 352);
-        assert_eq!(counts.memory(Method::Sort), 156 + 140 + 352 + 160);
+        assert_eq!(counts.gone_through(3), must(3 * (120 + 144 + 80) + 120, 0));
+        assert_eq!(counts.triangles(), 156);
+        assert_eq!(abuffer::bytes([5, 1], 11, false), 140 + 352);
+        assert_eq!(abuffer::bytes([5, 1], 11, true), 140 + 352 + 160);
+        assert_eq!(abuffer::bytes([5, 4], 11, false), 5 * (4 + 4 * 24) + 352);
         assert_eq!(counts.spec_memory(9), 156 + 320 + 352 + 176);
     }
 }

@@ -1,11 +1,12 @@
 //! Rows as comma-separated values, one line each, in a fixed order of columns.
 
-use super::{Bench, Row};
+use super::{Bench, Row, Spread};
 use crate::text::quoted;
 
 /// The columns. Times are in milliseconds, rates per second, memory in bytes, PSNR in
-/// decibels or `exact`; `ratio` is over the same leg's time of all layers by sorting.
-pub const COLUMNS: [&str; 27] = [
+/// decibels or `exact`; `ratio` is over the same leg's time of all layers by sorting; `time` is from
+/// snapped triangles on, `frame` from vertices on, both to the picture; what was not measured is empty.
+pub const COLUMNS: [&str; 34] = [
     "scene",
     "width",
     "height",
@@ -33,6 +34,13 @@ pub const COLUMNS: [&str; 27] = [
     "before_ms",
     "order_ms",
     "blend_ms",
+    "samples",
+    "frame_ms",
+    "frame_ms_min",
+    "frame_ms_max",
+    "bytes_per_fragment",
+    "bands",
+    "vertices_ms",
 ];
 
 /// The whole file, with a header.
@@ -40,13 +48,13 @@ pub fn csv(bench: &Bench) -> String {
     let mut text = COLUMNS.join(",");
     text.push('\n');
     for row in &bench.rows {
-        text.push_str(&values(row, bench.runs).join(","));
+        text.push_str(&values(row).join(","));
         text.push('\n');
     }
     text
 }
 
-fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
+fn values(row: &Row) -> [String; COLUMNS.len()] {
     let of = |names: &[&str]| {
         let parts = row
             .parts
@@ -54,6 +62,9 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
             .filter(|(n, _)| names.contains(&n.as_str()));
         number(parts.fold(0.0, |sum, (_, ms)| sum + ms))
     };
+    let frame = |value: fn(Spread) -> f64| row.frame.map_or_else(String::new, |f| number(value(f)));
+    let vertices = row.frame.map(|frame| frame.median - row.time.median);
+    let vertices = vertices.map_or_else(String::new, number);
     [
         // Names of scenes come from folders, which may be called anything.
         quoted(&row.scene).into_owned(),
@@ -65,7 +76,7 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
         row.method.name().to_owned(),
         row.layers.to_string(),
         row.all.to_string(),
-        runs.to_string(),
+        row.runs.to_string(),
         row.clock.clone(),
         number(row.time.median),
         number(row.time.min),
@@ -83,6 +94,14 @@ fn values(row: &Row, runs: u32) -> [String; COLUMNS.len()] {
         of(&["clear", "opaque", "build"]),
         of(&["nearest", "sort"]),
         of(&["blend"]),
+        row.samples.to_string(),
+        frame(|of| of.median),
+        frame(|of| of.min),
+        frame(|of| of.max),
+        row.of_fragment
+            .map_or_else(String::new, |bytes| bytes.to_string()),
+        row.bands.to_string(),
+        vertices,
     ]
 }
 

@@ -15,9 +15,12 @@ pub struct Error {
 /// differences of all channels of all pixels. Colours are linear, and the peak is 1,
 /// whether or not a scene reaches or exceeds it. Beside it the largest absolute
 /// difference.
-pub fn psnr(exact: &[[Bounded; 3]], seen: impl IntoIterator<Item = [f64; 3]>) -> Error {
+pub fn psnr<'e>(
+    exact: impl IntoIterator<Item = &'e [Bounded; 3]>,
+    seen: impl IntoIterator<Item = [f64; 3]>,
+) -> Error {
     let (mut sum, mut count, mut largest) = (0.0, 0_u64, 0.0_f64);
-    for (exact, seen) in exact.iter().zip(seen) {
+    for (exact, seen) in exact.into_iter().zip(seen) {
         for (exact, seen) in exact.iter().zip(seen) {
             let difference = (seen - exact.value).abs();
             sum += difference * difference;

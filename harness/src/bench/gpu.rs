@@ -1,22 +1,22 @@
 //! A GPU leg that is measured: first its pictures are compared, then it is timed.
 
+mod frames;
+
 use std::time::Instant;
 
 use triptych_gpu::abuffer::{Options, Part, Timed};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::timer::{Clock, Timer};
-use triptych_spec::abuffer::Lists;
+use triptych_gpu::vertex;
+use triptych_spec::scene::Scene;
 
 use super::error::Error;
 use super::reference::Grid;
-use super::scene::Measured;
+use super::rivals::Beside;
 use super::tiles::ByTiles;
 use super::{AWAKE, Method};
-use crate::compare::compare;
 use crate::compare::lists::certify;
-use crate::compare::order;
-use crate::observe::{Gpu, Observed, Spec};
 
 /// Why a leg has no figures.
 pub(super) enum Refusal {
@@ -32,6 +32,20 @@ impl From<GpuError> for Refusal {
     }
 }
 
+/// What a leg is set up from.
+pub(super) struct Start<'r> {
+    pub(super) label: String,
+    pub(super) rasterizer: &'r Rasterizer<'r>,
+    pub(super) grid: &'r Grid,
+    pub(super) scene: &'r Scene,
+    pub(super) options: Options<'r>,
+    pub(super) clock: &'r Clock,
+    /// Bytes that the buffers of a technique may take.
+    pub(super) budget: u64,
+    /// Rounds that count.
+    pub(super) runs: u32,
+}
+
 /// A leg that is set up, and whose pictures are right.
 pub(super) struct Leg<'r> {
     pub(super) label: String,
@@ -39,10 +53,15 @@ pub(super) struct Leg<'r> {
     pub(super) adapter: &'r str,
     /// Whether it has clocks of its own.
     board: bool,
+    pub(super) runs: u32,
     pub(super) grid: &'r Grid,
+    /// From vertices to triangles, if the device can do it by itself.
+    pub(super) vertices: Option<Vertices<'r>>,
     timed: Timed<'r, 'r>,
     /// The same frame by tiles, where the leg draws without the hardware's rasteriser.
-    tiles: Option<ByTiles<'r>>,
+    pub(super) tiles: Option<ByTiles<'r>>,
+    /// Other techniques.
+    pub(super) beside: Vec<Beside<'r>>,
     timer: Timer,
     parts: Vec<Part>,
     errors: Vec<(Part, Error)>,
@@ -50,86 +69,114 @@ pub(super) struct Leg<'r> {
     rounds: Vec<Vec<f64>>,
 }
 
+/// The vertex stages of a leg.
+pub(super) struct Vertices<'r> {
+    timed: vertex::Timed<'r>,
+    timer: Timer,
+    /// Seconds of each round.
+    pub(super) seconds: Vec<f64>,
+}
+
+impl<'r> Vertices<'r> {
+    pub(super) fn new(start: &Start<'r>) -> Result<Self, GpuError> {
+        let Rasterizer {
+            gpu, kernels, path, ..
+        } = *start.rasterizer;
+        let prims = &start.grid.primitives;
+        let grid = (prims.bits, prims.samples);
+        let by_rows = path != Path::Fragment;
+        Ok(Self {
+            timed: vertex::Timed::new(gpu, kernels, start.scene, grid, by_rows)?,
+            timer: Timer::new(gpu, start.clock, 1)?,
+            seconds: Vec::new(),
+        })
+    }
+}
+
 impl<'r> Leg<'r> {
-    /// Sets up a leg on triangles that are on its device, and compares every picture.
-    pub(super) fn new(
-        label: String,
-        rasterizer: &'r Rasterizer<'r>,
-        grid: &'r Grid,
-        options: Options<'_>,
-        clock: &Clock,
-    ) -> Result<Self, Refusal> {
-        let expected = grid.run.lists.attempts;
-        let options = Options {
-            capacity: Some(expected),
-            ..options
-        };
-        let mut timed = Timed::new(rasterizer, options, |prim| grid.run.is_opaque(prim))?;
-        let lists = timed.build()?;
-        if lists.attempts != expected {
-            let attempts = lists.attempts;
-            let words = format!("{label}: build counts {attempts} fragments, must be {expected}");
-            return Err(Refusal::Wrong(words));
-        }
-        let certificate = certify(&lists);
-        let longest = certificate.longest().filter(|_| certificate.is_sound());
-        let Some(longest) = longest else {
-            return Err(Refusal::Wrong(format!(
-                "{label}: build leaves damaged lists"
-            )));
-        };
-        timed.follow(longest, &grid.layers)?;
-        sorted(&label, &timed.sorted()?, grid)?;
-        let tiles = match rasterizer.path {
-            Path::Fragment => None,
-            _ => Some(ByTiles::new(&label, rasterizer, grid, options, clock)?),
-        };
-        let parts: Vec<Part> = timed.parts().collect();
-        let spans = u32::try_from(parts.len()).expect("a few parts");
-        let mut leg = Self {
-            timer: Timer::new(rasterizer.gpu, clock, spans)?,
+    /// Sets up a leg on triangles that are on its device, and compares every picture of its lists.
+    pub(super) fn new(start: &Start<'r>) -> Result<Self, Refusal> {
+        let Start {
             label,
+            rasterizer,
+            grid,
+            ..
+        } = start;
+        let (rasterizer, grid) = (*rasterizer, *grid);
+        let opaque = |prim| grid.is_opaque(prim);
+        let mut timed =
+            Timed::in_bands(rasterizer, start.options, &grid.rows, start.budget, opaque)?;
+        timed.follow(longest(label, &timed, grid)?, &grid.shown())?;
+        let mut wrong = Ok(());
+        timed.sorted(|band, lists| {
+            if wrong.is_ok() {
+                wrong = grid.sorted(label, band, lists);
+            }
+        })?;
+        wrong?;
+        let parts: Vec<Part> = timed.parts().collect();
+        let mut leg = Self {
+            timer: Timer::new(rasterizer.gpu, start.clock, timed.spans())?,
+            label: label.clone(),
             adapter: &rasterizer.gpu.name,
             board: rasterizer.gpu.info.device_type != wgpu::DeviceType::Cpu,
+            runs: start.runs,
             grid,
+            vertices: None,
             timed,
-            tiles,
+            tiles: None,
+            beside: Vec::new(),
             parts,
             errors: Vec::new(),
             rounds: Vec::new(),
         };
-        leg.errors = leg.compare()?;
+        leg.errors = leg.compare_lists()?;
         Ok(leg)
     }
 
-    /// Compares every picture with the spec's of the same layers.
-    pub(super) fn compare(&self) -> Result<Vec<(Part, Error)>, Refusal> {
-        let mut errors = Vec::new();
-        let mut wrong = None;
-        self.timed.pictures(|part, picture| {
-            let seen = picture.iter().map(|pixel| pixel.map(f64::from));
-            errors.push((part, self.grid.error(seen)));
-            let (method, layers) = self.variant(part);
-            wrong = wrong
-                .take()
-                .or_else(|| self.grid.wrong(&self.label, layers, method, picture));
-        })?;
+    /// Compares every picture with the spec's.
+    pub(super) fn compare(&self) -> Result<(), Refusal> {
+        self.compare_lists()?;
         if let Some(tiles) = &self.tiles {
             tiles.compare(&self.label)?;
         }
+        for beside in &self.beside {
+            beside.compare(&self.label)?;
+        }
+        Ok(())
+    }
+
+    /// Compares every picture of lists with the spec's of the same layers.
+    fn compare_lists(&self) -> Result<Vec<(Part, Error)>, Refusal> {
+        let mut errors = Vec::new();
+        let mut wrong = None;
+        self.timed.pictures(|part, picture| {
+            errors.push((part, self.grid.error(&picture)));
+            let (method, layers) = self.variant(part);
+            wrong = wrong.take().or_else(|| {
+                let label = &self.label;
+                self.grid.wrong(label, layers, method.name(), &picture)
+            });
+        })?;
         match wrong {
             Some(words) => Err(Refusal::Wrong(words)),
             None => Ok(errors),
         }
     }
 
-    /// Runs everything once, and keeps no times.
-    pub(super) fn warm_up(&self, round: u32) -> Result<(), Refusal> {
-        self.timed.time(&self.timer, round)?;
-        if let Some(tiles) = &self.tiles {
-            tiles.time()?;
+    /// Runs everything once, and keeps no times; gives how many seconds it took the device.
+    pub(super) fn warm_up(&self, round: u32) -> Result<f64, Refusal> {
+        let mut seconds: f64 = self.timed.time(&self.timer, round)?.iter().sum();
+        if let Some(Vertices { timed, timer, .. }) = &self.vertices {
+            seconds += timed.time(timer)?;
         }
-        Ok(())
+        if let Some(tiles) = &self.tiles {
+            seconds += tiles.time()?.iter().sum::<f64>();
+        }
+        for beside in &self.beside {
+            seconds += beside.time()?;
+        }
+        Ok(seconds)
     }
 
     /// Runs everything once, and keeps the times; before it as often as wakes a board,
@@ -139,8 +186,19 @@ impl<'r> Leg<'r> {
         while self.board && start.elapsed() < AWAKE {
             self.warm_up(round)?;
         }
+        if let Some(Vertices {
+            timed,
+            timer,
+            seconds,
+        }) = &mut self.vertices
+        {
+            seconds.push(timed.time(timer)?);
+        }
         let seconds = self.timed.time(&self.timer, round)?;
         self.rounds.push(seconds);
+        for beside in &mut self.beside {
+            beside.round()?;
+        }
         self.tiles.as_mut().map_or(Ok(()), ByTiles::round)
     }
 
@@ -152,80 +210,21 @@ impl<'r> Leg<'r> {
             _ => (Method::Sort, self.grid.counts.longest()),
         }
     }
-
-    /// The frames that were measured.
-    pub(super) fn measured(&self) -> Vec<Measured> {
-        let before = [Part::Clear, Part::Opaque, Part::Build];
-        let frame = |(part, error): &(Part, Error)| {
-            let (method, layers) = self.variant(*part);
-            let belongs = |other: &Part| {
-                let sorts = *other == Part::Sort && method == Method::Sort;
-                before.contains(other) || sorts || other == part
-            };
-            let parts = self.parts.iter().enumerate().filter(|(_, p)| belongs(p));
-            let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
-            let counts = &self.grid.counts;
-            let mut work = super::counts::Work::default();
-            for (_, part) in parts.clone() {
-                work = work.and(counts.work(*part));
-            }
-            Measured {
-                method,
-                layers,
-                parts: parts.map(|(at, p)| (name(*p), seconds(at))).collect(),
-                error: *error,
-                memory: counts.memory(method),
-                work,
-            }
-        };
-        let mut frames: Vec<Measured> = self.errors.iter().map(frame).collect();
-        if let Some(tiles) = &self.tiles {
-            frames.extend(tiles.measured(self.opaque().as_ref()));
-        }
-        frames
-    }
-
-    /// Stage opaque alone, where it runs.
-    fn opaque(&self) -> Option<Measured> {
-        let at = self.parts.iter().position(|part| *part == Part::Opaque)?;
-        Some(Measured {
-            method: Method::Sort,
-            layers: 0,
-            parts: vec![(
-                name(Part::Opaque),
-                self.rounds.iter().map(|r| r[at]).collect(),
-            )],
-            error: self.errors.first()?.1,
-            memory: 0,
-            work: self.grid.counts.work(Part::Opaque),
-        })
-    }
 }
 
-/// Compares the sorted lists with the spec's: pictures hide an order that changes no
-/// colour.
-pub(super) fn sorted(label: &str, lists: &Lists, grid: &Grid) -> Result<(), Refusal> {
-    let must = Observed::<Spec, _>::new("spec", &grid.run.sorted);
-    let seen = Observed::<Gpu, _>::new(label, lists);
-    let width = grid.run.primitives.size.width;
-    let judgement = compare(&must, &seen, |a, b| order::compare(a, b, width));
-    if judgement.differ() == 0 && judgement.compared > 0 {
-        return Ok(());
+/// Nodes of the longest list, if all lists are sound and together have what they must.
+fn longest(label: &str, timed: &Timed<'_, '_>, grid: &Grid) -> Result<u32, Refusal> {
+    let (mut attempts, mut longest) = (0, Some(0));
+    timed.build(|_, lists| {
+        attempts += u64::from(lists.attempts);
+        let certificate = certify(&lists);
+        let own = certificate.longest().filter(|_| certificate.is_sound());
+        longest = longest.zip(own).map(|(all, own)| u32::max(all, own));
+    })?;
+    let must = grid.fragments();
+    if attempts != must {
+        let words = format!("{label}: build counts {attempts} fragments, must be {must}");
+        return Err(Refusal::Wrong(words));
     }
-    let (differ, unit) = (judgement.differ(), judgement.unit);
-    let first = judgement.described.first().cloned().unwrap_or_default();
-    Err(Refusal::Wrong(format!(
-        "{label}, sorted lists: {differ} {unit} differ; {first}"
-    )))
-}
-
-/// A part's name in results.
-fn name(part: Part) -> &'static str {
-    match part {
-        Part::Clear => "clear",
-        Part::Opaque => "opaque",
-        Part::Build => "build",
-        Part::Sort => "sort",
-        Part::Nearest(_) | Part::NearestSorted(_) | Part::Resolve => "blend",
-    }
+    longest.ok_or_else(|| Refusal::Wrong(format!("{label}: build leaves damaged lists")))
 }

@@ -1,7 +1,7 @@
 //! A run as a page that can be committed beside others.
 
 use super::table::{COLUMNS, ceiling, cells, heading};
-use super::{AWAKE, Bench, Machine, WARM_UP, WARM_UP_WORK};
+use super::{AWAKE, Bench, Machine, WARM_UP, WARM_UP_WORK, paper};
 use crate::text::markdown as text;
 
 impl Bench {
@@ -39,8 +39,20 @@ pub fn page(bench: &Bench) -> String {
         lines.push(String::new());
         lines.push(format!("| {} |", COLUMNS.join(" | ")));
         lines.push(format!("|---|{}", "---:|".repeat(COLUMNS.len() - 1)));
-        let rows = bench.fastest().filter(|row| row.scene == scene);
+        let rows = bench.shown().filter(|row| row.scene == scene);
         lines.extend(rows.map(|row| format!("| {} |", cells(row).map(|c| text(&c)).join(" | "))));
+    }
+    for section in paper::sections(bench) {
+        lines.push(String::new());
+        lines.push(format!("## {}", text(&section.heading)));
+        lines.push(String::new());
+        lines.push(format!("| {} |", section.columns.join(" | ")));
+        lines.push(format!(
+            "|---|---|{}",
+            "---:|".repeat(section.columns.len() - 2)
+        ));
+        let cells = |row: &Vec<String>| row.iter().map(|c| text(c)).collect::<Vec<_>>().join(" | ");
+        lines.extend(section.rows.iter().map(|row| format!("| {} |", cells(row))));
     }
     lines.push(String::new());
     lines.join("\n")
@@ -60,11 +72,12 @@ pub(super) fn machine(machine: &Machine) -> Vec<String> {
 
 fn how(bench: &Bench) -> String {
     format!(
-        "Medians of {} rounds, with minimum and maximum; every round runs every leg and variant \
+        "Medians of {} rounds, fewer of software drivers unless asked for, as the CSV says, and one of the \
+         spec, with minimum and maximum; every round runs every leg and variant \
          once. Before\nthem come at least {WARM_UP} rounds to warm up, and as many as keep each \
-         adapter at work for {} s on each scene; before each of its rounds a board is at work for {} ms.\nTimed is all from snapped triangles to the \
+         adapter at work for {} s on each scene, by its own clock; before each of its rounds a board is at work for {} ms.\nTimed is all from snapped triangles to the \
          picture, coverage included: empty\nthe lists, opaque surfaces, build, order, blend; no \
-         transfers, no compilation. GPU times are timestamps\nof the device. Of each leg and number of \
+         transfers, no compilation. GPU times are timestamps\nof the device. *From vertices* is the median of the same with transform, clip and snap before it, on the device. Of each leg and number of \
          layers the faster method is shown, the CSV has both:\n*insertion* keeps the n nearest in \
          one walk over the unsorted list, *sort* sorts and stops after n.\n*Of all* is the time \
          over the same leg's with all layers by sorting, round by round. PSNR is of linear\n\

@@ -2,30 +2,75 @@
 
 use triptych_gpu::abuffer::{KEPT_MAX, with_layers};
 use triptych_gpu::kernel::Kernels;
-use triptych_gpu::raster::Path;
+use triptych_gpu::raster::{MEMORY, Path};
 use triptych_gpu::timer::Clock;
 use triptych_gpu::wgsl::Sources;
+use triptych_spec::raster::Samples;
 
 use super::counts::Work;
-use super::scene::{Station, scene};
-use super::{Bench, Ceilings, Machine, Progress, SCENES};
+use super::scene::scene;
+use super::station::Station;
+use super::{Bench, Ceilings, Machine, Progress, RUNS, SCENES, full, paper};
 use crate::corpus::Entry;
 use crate::replay::gpu::Adapter;
-use crate::scene::{LoadError, load_entry};
+use crate::scene::{LoadError, Loaded, load_entry};
+
+/// Rounds of a software driver, unless a number is asked for: a frame takes it seconds.
+const RUNS_OF_SOFTWARE: u32 = 5;
+
+/// Bytes that a technique's buffers take at most, unless asked for otherwise: of a software driver,
+/// which shares the host's memory, and of a board.
+const BUDGET: [u64; 2] = [MEMORY, 16 << 30];
 
 /// What is measured, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The scenes; `None`: those of [`SCENES`].
+    /// The scenes; `None`: those of [`SCENES`], and the paper's.
     pub scenes: Option<Vec<Entry>>,
+    /// The paper's scenes, [`paper::SCENES`], alone.
+    pub paper: bool,
+    /// Those of nothing but fragments, [`full::SCENES`], alone.
+    pub full: bool,
     /// Raster paths.
     pub paths: Vec<Path>,
-    /// Rounds that count, at least one.
-    pub runs: u32,
+    /// Rounds that count, at least one; `None`: [`RUNS`], few of a software driver.
+    pub runs: Option<u32>,
     /// Numbers of nearest layers beside all, each at least one; `None`: 1, 2, 4, …
     pub layers: Option<Vec<u32>>,
+    /// Samples a pixel, each number in turn; empty: those of the scene.
+    pub samples: Vec<u32>,
+    /// Techniques beside lists on every scene, whatever they take.
+    pub rivals: bool,
+    /// Bytes that the buffers of a technique may take.
+    pub budget: Option<u64>,
     /// Today, year-month-day.
     pub date: String,
+}
+
+impl Options {
+    pub(super) fn runs(&self, software: bool) -> u32 {
+        let default = if software { RUNS_OF_SOFTWARE } else { RUNS };
+        self.runs.unwrap_or(default)
+    }
+
+    pub(super) fn budget(&self, software: bool) -> u64 {
+        let [host, board] = BUDGET;
+        let default = if software { host } else { board };
+        self.budget.unwrap_or(default)
+    }
+}
+
+/// What is asked of a scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Asked {
+    /// Numbers of nearest layers beside all; `None`: 1, 2, 4, …
+    pub(super) layers: Option<Vec<u32>>,
+    /// Samples a pixel, each number in turn; empty: those of the scene.
+    pub(super) samples: Vec<u32>,
+    /// Whether techniques beside lists are measured.
+    pub(super) rivals: bool,
+    /// Whether it is too much for a software driver.
+    pub(super) boards: bool,
 }
 
 /// What came of a run.
@@ -72,60 +117,132 @@ pub fn run(
         family: "abuffer".to_owned(),
         date: options.date.clone(),
         machine: Machine::here(adapters),
-        runs: options.runs,
+        runs: options.runs(false),
         ceilings: Vec::new(),
         rows: Vec::new(),
         remarks: Vec::new(),
     };
     let mut wrong = Vec::new();
-    progress.begin("ceilings", u32::try_from(adapters.len()).unwrap_or(0) + 1);
-    bench.ceilings.push(Ceilings::of_core(options.runs));
-    progress.step();
-    let mut stations = Vec::new();
-    for adapter in adapters {
-        let mut station = station(adapter, options);
-        match Ceilings::of(&adapter.gpu, &station.kernels, options.runs) {
-            Ok((ceilings, clock)) => {
-                if let Clock::Host(reason) = &clock {
-                    let name = &adapter.gpu.name;
-                    let words = format!("{name} is timed by the host's clock: {reason}");
-                    bench.remarks.push(words);
-                }
-                bench.ceilings.push(ceilings);
-                station.clock = clock;
-                stations.push(station);
-            }
-            Err(error) => bench.remarks.push(format!("not measured: {error}")),
+    let stations = bench.stations(adapters, options, progress);
+    for (loaded, asked) in bench.scenes_of(corpus, options)? {
+        for loaded in with_samples(loaded, &asked.samples) {
+            progress.begin(&format!("{}: what must be", loaded.name), 1);
+            let ceilings = &bench.ceilings;
+            let done = scene(&loaded, &asked, &stations, options, ceilings, progress)
+                .map_err(|error| format!("{}: {error}", loaded.name))?;
+            bench.rows.extend(done.rows);
+            let skipped = done.skipped.iter();
+            bench
+                .remarks
+                .extend(skipped.map(|why| format!("not measured: {why}")));
+            wrong.extend(done.wrong);
         }
-        progress.step();
-    }
-    let entries = match &options.scenes {
-        Some(scenes) => scenes.clone(),
-        None => named(corpus, &SCENES, &mut bench.remarks),
-    };
-    for entry in &entries {
-        let loaded = match load_entry(entry, None) {
-            Ok(loaded) => loaded,
-            Err(missing @ LoadError::Missing { .. }) => {
-                let words = format!("not measured: {}: {missing}", entry.name);
-                bench.remarks.push(words);
-                continue;
-            }
-            Err(error) => return Err(error.to_string()),
-        };
-        progress.begin(&format!("{}: the spec", entry.name), options.runs);
-        let done = scene(&loaded, &stations, options, &bench.ceilings, progress)
-            .map_err(|error| format!("{}: {error}", entry.name))?;
-        bench.rows.extend(done.rows);
-        let skipped = done.skipped.iter();
-        bench
-            .remarks
-            .extend(skipped.map(|why| format!("not measured: {why}")));
-        wrong.extend(done.wrong);
     }
     bench.remarks.extend(bench.varying());
     progress.end();
     Ok(Outcome { bench, wrong })
+}
+
+/// A scene with each of these numbers of samples a pixel, by a name of its own.
+fn with_samples(loaded: Loaded, samples: &[u32]) -> Vec<Loaded> {
+    if samples.is_empty() {
+        return vec![loaded];
+    }
+    let own = loaded.scene.samples;
+    let standard = samples.iter().filter_map(|count| Samples::standard(*count));
+    let with = |samples: Samples| {
+        let mut loaded = loaded.clone();
+        loaded.scene.samples = samples;
+        if samples != own {
+            loaded.name = format!("{} with {} samples", loaded.name, samples.count());
+        }
+        loaded
+    };
+    standard.map(with).collect()
+}
+
+impl Bench {
+    /// The adapters with their kernels and clocks, once it is known what they can do at most.
+    fn stations<'a>(
+        &mut self,
+        adapters: &'a [Adapter],
+        options: &Options,
+        progress: &Progress,
+    ) -> Vec<Station<'a>> {
+        progress.begin("ceilings", u32::try_from(adapters.len()).unwrap_or(0) + 1);
+        self.ceilings.push(Ceilings::of_core(options.runs(true)));
+        progress.step();
+        let mut stations = Vec::new();
+        for adapter in adapters {
+            let mut station = station(adapter, options);
+            let software = adapter.gpu.info.device_type == wgpu::DeviceType::Cpu;
+            match Ceilings::of(&adapter.gpu, &station.kernels, options.runs(software)) {
+                Ok((ceilings, clock)) => {
+                    if let Clock::Host(reason) = &clock {
+                        let name = &adapter.gpu.name;
+                        let words = format!("{name} is timed by the host's clock: {reason}");
+                        self.remarks.push(words);
+                    }
+                    self.ceilings.push(ceilings);
+                    station.clock = clock;
+                    stations.push(station);
+                }
+                Err(error) => self.remarks.push(format!("not measured: {error}")),
+            }
+            progress.step();
+        }
+        stations
+    }
+
+    /// The scenes that can be read, and what is asked of each.
+    fn scenes_of(
+        &mut self,
+        corpus: &[Entry],
+        options: &Options,
+    ) -> Result<Vec<(Loaded, Asked)>, String> {
+        let mut all = Vec::new();
+        let ours = options.scenes.is_none() && !options.paper && !options.full;
+        let paper = paper::SCENES.iter().filter(|_| options.paper || ours);
+        let full = full::SCENES.iter().filter(|_| options.full);
+        for own in paper.chain(full) {
+            let loaded = self.loaded(own.name, own.load())?;
+            let asked = own.asked(options);
+            all.extend(loaded.map(|loaded| (loaded, asked)));
+        }
+        let entries = match &options.scenes {
+            Some(scenes) => scenes.clone(),
+            None if ours => named(corpus, &SCENES, &mut self.remarks),
+            None => Vec::new(),
+        };
+        for entry in &entries {
+            let loaded = self.loaded(&entry.name, load_entry(entry, None))?;
+            let asked = Asked {
+                layers: options.layers.clone(),
+                samples: options.samples.clone(),
+                rivals: options.rivals,
+                boards: false,
+            };
+            all.extend(loaded.map(|loaded| (loaded, asked)));
+        }
+        Ok(all)
+    }
+
+    /// A scene, unless its mesh is missing.
+    fn loaded(
+        &mut self,
+        name: &str,
+        loaded: Result<Loaded, LoadError>,
+    ) -> Result<Option<Loaded>, String> {
+        match loaded {
+            Ok(loaded) => Ok(Some(loaded)),
+            Err(missing @ LoadError::Missing { .. }) => {
+                let words = format!("not measured: {name}: {missing}");
+                self.remarks.push(words);
+                Ok(None)
+            }
+            Err(error) => Err(error.to_string()),
+        }
+    }
 }
 
 /// The scenes of these names. Of those that a corpus lacks, as a bundle's may, it is said

@@ -4,32 +4,24 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use triptych_gpu::abuffer;
-use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_gpu::timer::Clock;
-use triptych_spec::abuffer::Order;
+use triptych_spec::raster::Samples;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::counts::Work;
 use super::error::Error;
-use super::gpu::{Leg, Refusal};
+use super::gpu::{Leg, Refusal, Start, Vertices};
 use super::reference::Grid;
-use super::run::{Bound, Options};
+use super::rivals::{self, Beside};
+use super::rows::{Timing, rows};
+use super::run::{Asked, Bound, Options};
 use super::spec::Core;
+use super::station::Station;
+use super::tiles::ByTiles;
 use super::warm::warm_up;
-use super::{Ceilings, Method, Progress, Row, Spread};
-use crate::calibrate;
+use super::{Ceilings, Method, Progress, Row};
 use crate::plan::Plan;
-use crate::replay::gpu::Adapter;
 use crate::scene::Loaded;
-
-/// An adapter with the kernels that are timed.
-pub(super) struct Station<'a> {
-    pub(super) adapter: &'a Adapter,
-    pub(super) kernels: Kernels,
-    pub(super) native: Option<Kernels>,
-    pub(super) clock: Clock,
-}
 
 /// A kind of frame, measured.
 pub(super) struct Measured {
@@ -39,6 +31,8 @@ pub(super) struct Measured {
     pub(super) parts: Vec<(&'static str, Vec<f64>)>,
     pub(super) error: Error,
     pub(super) memory: u64,
+    /// Bytes of a stored fragment.
+    pub(super) of_fragment: Option<u64>,
     pub(super) work: Work,
 }
 
@@ -50,30 +44,6 @@ pub(super) struct Done {
     pub(super) wrong: Vec<String>,
 }
 
-impl Station<'_> {
-    fn rasterizer(&self, path: Path, grid: &Grid) -> Result<Rasterizer<'_>, Refusal> {
-        let kernels = match path {
-            Path::Native => self.native.as_ref(),
-            Path::Compute | Path::Fragment => Some(&self.kernels),
-        };
-        let reason = "no 64-bit integers: compute takes its place";
-        let kernels = kernels.ok_or_else(|| Refusal::Skipped(reason.to_owned()))?;
-        if path == Path::Fragment && self.adapter.grid == calibrate::Grid::Unknown {
-            let reason = "the driver's sub-pixel grid is unknown".to_owned();
-            return Err(Refusal::Skipped(reason));
-        }
-        for foreign in &self.adapter.foreign {
-            if !foreign.serves(path == Path::Fragment) {
-                let reason = format!("{} has no kernel for it", foreign.file);
-                return Err(Refusal::Skipped(reason));
-            }
-        }
-        let (primitives, faces) = (&grid.run.primitives, &grid.run.faces);
-        let gpu = &self.adapter.gpu;
-        Ok(Rasterizer::new(gpu, kernels, path, primitives, faces)?)
-    }
-}
-
 impl Done {
     fn refused(&mut self, what: &str, refusal: Refusal) {
         match refusal {
@@ -81,205 +51,249 @@ impl Done {
             Refusal::Wrong(words) => self.wrong.push(format!("{what}: {words}")),
         }
     }
+
+    /// What worked; what did not is noted.
+    fn keep<T>(&mut self, what: &str, result: Result<T, Refusal>) -> Option<T> {
+        result.map_err(|refusal| self.refused(what, refusal)).ok()
+    }
 }
+
+impl Done {
+    /// The spec's rows, unless it does not hold the scene.
+    fn of_core(&mut self, loaded: &Loaded, plan: &Plan, spec: &Grid, bound: &Bound<'_>) {
+        let Some(run) = spec.whole() else {
+            self.skipped.push(format!(
+                "{}: spec: {} fragments are more than a replay holds; {} rows of pixels are \
+                 compared",
+                loaded.name,
+                spec.fragments(),
+                spec.rows_compared()
+            ));
+            return;
+        };
+        let core = Core::new(&loaded.scene, plan, spec, run);
+        let timing = Timing {
+            leg: "spec",
+            bands: 1,
+            vertices: Some(vec![core.vertices]),
+        };
+        let own = rows(loaded, spec, &timing, &core.measured(), bound);
+        self.rows.extend(own);
+    }
+
+    /// The rows of a leg.
+    fn of_leg(&mut self, loaded: &Loaded, leg: &Leg<'_>, bound: &Bound<'_>) {
+        let measured = leg.measured();
+        if measured.iter().any(|m| m.seconds().any(|s| s <= 0.0)) {
+            let reason = Refusal::Skipped("its timestamps stand still".to_owned());
+            self.refused(&format!("{}: {}", loaded.name, leg.label), reason);
+            return;
+        }
+        let timing = Timing {
+            leg: &leg.label,
+            bands: leg.bands(),
+            vertices: leg.vertices.as_ref().map(|v| v.seconds.clone()),
+        };
+        let own = rows(loaded, leg.grid, &timing, &measured, bound);
+        self.rows.extend(own);
+    }
+}
+
+/// The spec on each sub-pixel grid with each set of samples.
+type Grids = BTreeMap<(u32, Samples), Grid>;
 
 /// A leg's triangles on its device.
 struct Prepared<'r> {
     label: String,
     rasterizer: Rasterizer<'r>,
     grid: &'r Grid,
-    clock: &'r Clock,
+    station: &'r Station<'r>,
 }
 
 /// Measures a scene.
 pub(super) fn scene(
     loaded: &Loaded,
+    asked: &Asked,
     stations: &[Station<'_>],
     options: &Options,
     ceilings: &[Ceilings],
     progress: &Progress,
 ) -> Result<Done, String> {
-    let plan = Plan::new(&loaded.scene, true);
+    let name = &loaded.name;
+    let plan = Plan::of(loaded, true);
     let mut done = Done::default();
-    if loaded.scene.samples.count() > 1 {
-        let words = format!(
-            "{}: frames of one sample a pixel are timed alone",
-            loaded.name
-        );
-        done.skipped.push(words);
+    let (grids, legs) = grids(loaded, asked, &plan, (stations, options), &mut done)?;
+    let own = (SUBPIXEL_BITS, loaded.scene.samples);
+    let Some(spec) = grids.get(&own) else {
         return Ok(done);
-    }
-    let grids = grids(loaded, &plan, stations, options)?;
+    };
     if grids.values().all(|grid| grid.counts.longest() == 0) {
-        let words = format!("{}: nothing transparent is seen", loaded.name);
+        let words = format!("{name}: nothing transparent is seen");
         done.skipped.push(words);
         return Ok(done);
     }
     let mut prepared = Vec::new();
-    for (station, path) in pairs(stations, options) {
+    for (station, path, key) in legs {
         let label = station.adapter.label(path);
-        let grid = &grids[&station.adapter.bits(path)];
-        match station.rasterizer(path, grid) {
-            Ok(rasterizer) => prepared.push(Prepared {
+        let grid = &grids[&key];
+        if let Some(rasterizer) =
+            done.keep(&format!("{name}: {label}"), station.rasterizer(path, grid))
+        {
+            prepared.push(Prepared {
                 label,
                 rasterizer,
                 grid,
-                clock: &station.clock,
-            }),
-            Err(refusal) => done.refused(&format!("{}: {label}", loaded.name), refusal),
+                station,
+            });
         }
     }
-    progress.begin(&format!("{}: comparing", loaded.name), options.runs);
-    let mut legs = legs(loaded, &plan, &prepared, &mut done);
-    let spec = &grids[&SUBPIXEL_BITS];
-    let mut core = Core::new(&loaded.scene, &plan, spec);
-    progress.begin(&format!("{}: warming up", loaded.name), options.runs);
-    warm_up(&core, &mut legs, |result| {
-        keep(result, &loaded.name, &mut done)
-    });
-    progress.begin(&format!("{}: measuring", loaded.name), options.runs);
-    for round in 0..options.runs {
-        core.round(round);
-        legs.retain_mut(|leg| keep(leg.round(round), &loaded.name, &mut done));
+    let steps = u32::try_from(prepared.len()).unwrap_or(u32::MAX);
+    progress.begin(&format!("{name}: comparing"), steps);
+    let mut legs = Vec::new();
+    for one in &prepared {
+        legs.extend(leg(one, (loaded, asked), &plan, options, &mut done));
         progress.step();
     }
-    legs.retain(|leg| keep(leg.compare().map(drop), &loaded.name, &mut done));
     let bound = Bound(ceilings);
-    let own = rows(loaded, spec, "spec", &core.measured(), &bound);
-    done.rows.extend(own);
+    progress.begin(&format!("{name}: the spec"), 1);
+    done.of_core(loaded, &plan, spec, &bound);
+    progress.step();
+    measure(name, &mut legs, &mut done, progress);
     for leg in &legs {
-        let measured = leg.measured();
-        if measured.iter().any(|m| m.seconds().any(|s| s <= 0.0)) {
-            let reason = Refusal::Skipped("its timestamps stand still".to_owned());
-            done.refused(&format!("{}: {}", loaded.name, leg.label), reason);
-            continue;
-        }
-        let own = rows(loaded, leg.grid, &leg.label, &measured, &bound);
-        done.rows.extend(own);
+        done.of_leg(loaded, leg, &bound);
     }
     Ok(done)
 }
 
-/// Every adapter with each path.
-fn pairs<'s, 'a>(
-    stations: &'s [Station<'a>],
-    options: &'s Options,
-) -> impl Iterator<Item = (&'s Station<'a>, Path)> {
-    let of = |station| options.paths.iter().map(move |path| (station, *path));
-    stations.iter().flat_map(of)
+/// Warms the legs up, runs all rounds, and compares once more.
+fn measure(name: &str, legs: &mut Vec<Leg<'_>>, done: &mut Done, progress: &Progress) {
+    progress.begin(&format!("{name}: warming up"), 1);
+    warm_up(legs, |result| done.keep(name, result).is_some());
+    progress.step();
+    let all = legs.iter().map(|leg| leg.runs);
+    progress.begin(&format!("{name}: measuring"), all.clone().sum());
+    for round in 0..all.max().unwrap_or(0) {
+        legs.retain_mut(|leg| {
+            if round >= leg.runs {
+                return true;
+            }
+            let result = leg.round(round);
+            progress.step();
+            done.keep(name, result).is_some()
+        });
+    }
+    legs.retain(|leg| done.keep(name, leg.compare()).is_some());
 }
 
+/// A leg of a scene: its station, its path, and the grid that it works on.
+type OfScene<'s> = (&'s Station<'s>, Path, (u32, Samples));
+
 /// What the spec says on each sub-pixel grid that a leg has, and on its own.
-fn grids(
+fn grids<'s>(
     loaded: &Loaded,
+    asked: &Asked,
     plan: &Plan,
-    stations: &[Station<'_>],
-    options: &Options,
-) -> Result<BTreeMap<u32, Grid>, String> {
-    let mut grids = BTreeMap::new();
-    let bits = pairs(stations, options).map(|(station, path)| station.adapter.bits(path));
-    for bits in bits.chain([SUBPIXEL_BITS]) {
-        if let Entry::Vacant(vacant) = grids.entry(bits) {
-            let mut grid = Grid::new(&loaded.scene, plan, bits)?;
-            grid.draw(&loaded.scene, options.layers.as_deref());
+    (stations, options): (&'s [Station<'s>], &Options),
+    done: &mut Done,
+) -> Result<(Grids, Vec<OfScene<'s>>), String> {
+    let samples = loaded.scene.samples;
+    let mut legs = Vec::new();
+    for station in stations {
+        for path in &options.paths {
+            let what = format!("{}: {}", loaded.name, station.adapter.label(*path));
+            if asked.boards && station.is_software() {
+                let words = "of so many fragments only on a board".to_owned();
+                done.refused(&what, Refusal::Skipped(words));
+                continue;
+            }
+            if let Some(samples) = done.keep(&what, station.samples(*path, samples)) {
+                legs.push((station, *path, (station.adapter.bits(*path), samples)));
+            }
+        }
+    }
+    let mut grids = Grids::new();
+    if legs.is_empty() && asked.boards {
+        return Ok((grids, legs));
+    }
+    for key in legs
+        .iter()
+        .map(|leg| leg.2)
+        .chain([(SUBPIXEL_BITS, samples)])
+    {
+        if let Entry::Vacant(vacant) = grids.entry(key) {
+            let mut grid = Grid::new(&loaded.scene, plan, key)?;
+            grid.draw(&loaded.scene, asked.layers.as_deref());
             vacant.insert(grid);
         }
     }
-    Ok(grids)
+    Ok((grids, legs))
 }
 
-/// The legs whose pictures are right.
-fn legs<'r>(
-    loaded: &Loaded,
+/// A leg whose pictures are right, with all techniques that it has.
+fn leg<'r>(
+    prepared: &'r Prepared<'r>,
+    (loaded, asked): (&'r Loaded, &Asked),
     plan: &Plan,
-    prepared: &'r [Prepared<'r>],
+    options: &Options,
     done: &mut Done,
-) -> Vec<Leg<'r>> {
-    let options = abuffer::Options {
-        given: None,
-        capacity: None,
-        opaque: plan.opaque,
-        lists: plan.lists,
-        depth_test: plan.depth_test,
-        order: Order::Centroid,
-        once: false,
-        background: loaded.scene.background,
-    };
-    let mut legs = Vec::new();
-    for Prepared {
+) -> Option<Leg<'r>> {
+    let Prepared {
         label,
         rasterizer,
         grid,
-        clock,
-    } in prepared
-    {
-        match Leg::new(label.clone(), rasterizer, grid, options, clock) {
-            Ok(leg) => legs.push(leg),
-            Err(refusal) => done.refused(&loaded.name, refusal),
+        station,
+    } = prepared;
+    let scene = &loaded.scene;
+    let what = format!("{}: {label}", loaded.name);
+    let start = Start {
+        label: label.clone(),
+        rasterizer,
+        grid,
+        scene,
+        options: abuffer::Options {
+            given: None,
+            capacity: None,
+            opaque: plan.opaque,
+            lists: plan.lists,
+            depth_test: plan.depth_test,
+            order: scene.order,
+            once: plan.once,
+            background: scene.background,
+        },
+        clock: &station.clock,
+        budget: options.budget(station.is_software()),
+        runs: options.runs(station.is_software()),
+    };
+    let mut leg = done.keep(&loaded.name, Leg::new(&start))?;
+    let vertices = Vertices::new(&start).map_err(Refusal::from);
+    leg.vertices = done.keep(&format!("{what}: vertex stages"), vertices);
+    let one = grid.primitives.samples.count() == 1;
+    if one && rasterizer.path != Path::Fragment {
+        let tiles = ByTiles::new(label, rasterizer, grid, start.options, start.clock);
+        leg.tiles = done.keep(&format!("{what}: tiles"), tiles);
+    }
+    if let Some(run) = grid.whole().filter(|_| one && asked.rivals) {
+        let given = rivals::Given {
+            rasterizer,
+            grid,
+            scene,
+            run,
+            all: options.rivals,
+        };
+        for kind in rivals::ALL {
+            let beside = Beside::new(kind, label, &given, start.clock);
+            let name = kind.method.name();
+            leg.beside
+                .extend(done.keep(&format!("{what}: {name}"), beside));
         }
     }
-    legs
-}
-
-/// Whether a leg goes on.
-fn keep(result: Result<(), Refusal>, name: &str, done: &mut Done) -> bool {
-    result
-        .map_err(|refusal| done.refused(name, refusal))
-        .is_ok()
+    Some(leg)
 }
 
 impl Measured {
     /// Seconds of a frame, round by round.
-    fn seconds(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn seconds(&self) -> impl Iterator<Item = f64> {
         let rounds = self.parts.first().map_or(0, |(_, seconds)| seconds.len());
         (0..rounds).map(|round| self.parts.iter().map(|(_, seconds)| seconds[round]).sum())
     }
-}
-
-/// The rows of a leg.
-fn rows(
-    loaded: &Loaded,
-    grid: &Grid,
-    leg: &str,
-    measured: &[Measured],
-    bound: &Bound<'_>,
-) -> Vec<Row> {
-    let longest = grid.counts.longest();
-    let is_reference = |m: &&Measured| m.method == Method::Sort && m.layers == longest;
-    let reference = measured.iter().find(is_reference);
-    let row = |m: &Measured| {
-        let time = Spread::of(m.seconds().map(|s| 1000.0 * s));
-        let pairs = m
-            .seconds()
-            .zip(reference.into_iter().flat_map(Measured::seconds));
-        let (what, seconds) = bound.of(leg, m.work);
-        let clock = bound.clock(leg);
-        let median = |seconds: &[f64]| 1000.0 * Spread::of(seconds.iter().copied()).median;
-        Row {
-            scene: loaded.name.clone(),
-            size: [loaded.scene.size.width, loaded.scene.size.height],
-            fragments: grid.counts.fragments,
-            longest,
-            leg: leg.to_owned(),
-            clock: clock.to_owned(),
-            method: m.method,
-            layers: m.layers,
-            all: m.layers >= longest,
-            time,
-            ratio: Spread::of(pairs.map(|(own, all)| own / all)),
-            parts: m
-                .parts
-                .iter()
-                .map(|(n, s)| ((*n).to_owned(), median(s)))
-                .collect(),
-            psnr: m.error.psnr,
-            largest: m.error.largest,
-            memory: m.memory,
-            fragments_per_second: 1000.0 * grid.counts.fragments as f64 / time.median,
-            bound: what.to_owned(),
-            bound_ms: 1000.0 * seconds,
-            fraction: 1000.0 * seconds / time.median,
-        }
-    };
-    measured.iter().map(row).collect()
 }

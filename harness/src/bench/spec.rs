@@ -1,121 +1,103 @@
-//! The spec on one core, measured.
+//! The spec on one core, measured: once, as it takes seconds where an adapter takes thousandths.
 
 use std::time::Duration;
 
 use triptych_gpu::abuffer::Part;
 use triptych_spec::abuffer::{build, nearest_layers, opaque, resolve, sort};
 use triptych_spec::scene::Scene;
+use triptych_spec::vertex::primitives;
 
 use super::Method;
 use super::counts::Work;
-use super::error::Error;
 use super::reference::Grid;
 use super::scene::Measured;
 use crate::plan::Plan;
-use crate::replay::spec::timed;
+use crate::replay::spec::{SpecRun, timed};
 
-/// The spec, round by round.
+/// The spec, which ran once.
 pub(super) struct Core<'g> {
-    scene: &'g Scene,
     plan: &'g Plan,
     grid: &'g Grid,
+    /// Seconds of the vertex stages.
+    pub(super) vertices: f64,
     /// Seconds of stages opaque and build; of the nearest layers, each with their
     /// picture; of sort and resolve.
-    rounds: Vec<[Vec<f64>; 4]>,
+    taken: [Vec<f64>; 4],
 }
 
 impl<'g> Core<'g> {
-    pub(super) fn new(scene: &'g Scene, plan: &'g Plan, grid: &'g Grid) -> Self {
-        Self {
-            scene,
-            plan,
-            grid,
-            rounds: Vec::new(),
-        }
-    }
-
-    /// Runs everything once, and keeps no times.
-    pub(super) fn warm_up(&self, round: u32) {
-        self.run(round);
-    }
-
-    /// Runs everything once, and keeps the times.
-    pub(super) fn round(&mut self, round: u32) {
-        let times = self.run(round);
-        self.rounds.push(times);
-    }
-
-    fn run(&self, round: u32) -> [Vec<f64>; 4] {
-        let (scene, run) = (self.scene, &self.grid.run);
-        let primitives = &run.primitives;
+    /// Runs everything once.
+    pub(super) fn new(scene: &Scene, plan: &'g Plan, grid: &'g Grid, run: &SpecRun) -> Self {
+        let prims = &run.primitives;
+        let vertices = timed(|| primitives(scene, prims.bits)).1;
         let mut before = Vec::new();
-        if self.plan.opaque {
-            before.push(timed(|| opaque(scene, primitives)).1);
+        if plan.opaque {
+            before.push(timed(|| opaque(scene, prims)).1);
         }
-        let depth_test = self.plan.depth_test;
-        let (lists, time) = timed(|| build(scene, primitives, &run.opaque, depth_test, u32::MAX));
+        let (lists, time) = timed(|| build(scene, prims, &run.opaque, plan.depth_test, u32::MAX));
         before.push(time);
-        let layers = &self.grid.layers;
+        let layers = &grid.layers;
         let mut order = vec![Duration::ZERO; layers.len()];
         let mut blend = order.clone();
-        for at in 0..layers.len() {
-            // None is always first.
-            let at = (at + round as usize) % layers.len();
+        // With several samples a pixel there are only all layers, in order.
+        let several = prims.samples.count() > 1;
+        for at in (0..layers.len()).filter(|_| !several) {
             let (kept, time) = timed(|| nearest_layers(&lists, layers[at]));
             order[at] = time;
-            blend[at] = timed(|| resolve(scene, primitives, &run.opaque, &kept)).1;
+            blend[at] = timed(|| resolve(scene, prims, &run.opaque, &kept)).1;
         }
         let (sorted, time) = timed(|| sort(&lists));
-        let all = timed(|| resolve(scene, primitives, &run.opaque, &sorted)).1;
+        let all = timed(|| resolve(scene, prims, &run.opaque, &sorted)).1;
         let times = [before, order, blend, vec![time, all]];
-        times.map(|times| times.iter().map(Duration::as_secs_f64).collect())
+        let seconds = |times: Vec<Duration>| times.iter().map(Duration::as_secs_f64).collect();
+        Self {
+            plan,
+            grid,
+            vertices: vertices.as_secs_f64(),
+            taken: times.map(seconds),
+        }
     }
 
     /// The frames that were measured.
     pub(super) fn measured(&self) -> Vec<Measured> {
-        let kept = (0..).zip(&self.grid.layers);
-        let mut all: Vec<Measured> = kept.map(|(at, n)| self.frame(at, *n)).collect();
         let longest = self.grid.counts.longest();
-        let seconds = |at: usize| self.rounds.iter().map(|r| r[3][at]).collect();
-        let mut parts = self.before();
-        parts.push(("sort", seconds(0)));
-        parts.push(("blend", seconds(1)));
-        all.push(Measured {
-            method: Method::Sort,
-            layers: longest,
-            parts,
-            error: self.error(longest),
-            memory: self.grid.counts.spec_memory(longest),
-            work: self.work(&[Part::Sort, Part::Resolve]),
-        });
+        let one = self.grid.primitives.samples.count() == 1;
+        let kept = (0..).zip(&self.grid.layers).filter(|_| one);
+        let mut all: Vec<Measured> = kept.map(|(at, n)| self.frame(at, *n)).collect();
+        let [sort, blend] = [0, 1].map(|at| vec![self.taken[3][at]]);
+        all.push(self.all(Method::Sort, longest, [("sort", sort), ("blend", blend)]));
         all
     }
 
     fn frame(&self, at: usize, layers: u32) -> Measured {
-        let seconds = |which: usize| self.rounds.iter().map(|r| r[which][at]).collect();
-        let mut parts = self.before();
-        parts.push(("nearest", seconds(1)));
-        parts.push(("blend", seconds(2)));
-        Measured {
-            method: Method::Insertion,
-            layers,
-            parts,
-            error: self.error(layers),
-            memory: self.grid.counts.spec_memory(layers),
-            work: self.work(&[Part::Nearest(layers)]),
-        }
+        let [order, blend] = [1, 2].map(|which| vec![self.taken[which][at]]);
+        let parts = [("nearest", order), ("blend", blend)];
+        self.all(Method::Insertion, layers, parts)
     }
 
-    fn before(&self) -> Vec<(&'static str, Vec<f64>)> {
+    fn all(&self, method: Method, layers: u32, last: [(&'static str, Vec<f64>); 2]) -> Measured {
         let names: &[&str] = match self.plan.opaque {
             true => &["opaque", "build"],
             false => &["build"],
         };
-        let seconds = |at: usize| self.rounds.iter().map(|r| r[0][at]).collect();
-        (0..)
-            .zip(names)
-            .map(|(at, name)| (*name, seconds(at)))
-            .collect()
+        let before = names.iter().zip(&self.taken[0]);
+        let mut parts: Vec<(&'static str, Vec<f64>)> = before
+            .map(|(name, seconds)| (*name, vec![*seconds]))
+            .collect();
+        parts.extend(last);
+        let work: &[Part] = match method {
+            Method::Sort => &[Part::Sort, Part::Resolve],
+            _ => &[Part::Nearest(layers)],
+        };
+        Measured {
+            method,
+            layers,
+            parts,
+            error: self.grid.error_of_spec(layers),
+            memory: self.grid.counts.spec_memory(layers),
+            of_fragment: Some(triptych_gpu::abuffer::NODE),
+            work: self.work(work),
+        }
     }
 
     fn work(&self, last: &[Part]) -> Work {
@@ -125,11 +107,5 @@ impl<'g> Core<'g> {
         all.fold(Work::default(), |sum, part| {
             sum.and(self.grid.counts.work(part))
         })
-    }
-
-    fn error(&self, layers: u32) -> Error {
-        let picture = &self.grid.picture(layers).value;
-        self.grid
-            .error(picture.iter().map(|pixel| pixel.map(|c| c.value)))
     }
 }

@@ -1,38 +1,51 @@
 //! Rows as tables: on the terminal, and as cells for others.
 
 use super::error::decibels;
-use super::{Bench, Ceilings, Row, Spread};
+use super::{Bench, Ceilings, Row, Spread, paper};
 use crate::text::{clean, share};
 
 /// The columns, of which the first is a name.
-pub const COLUMNS: [&str; 10] = [
+pub const COLUMNS: [&str; 12] = [
     "leg",
     "layers",
     "method",
     "time, ms",
+    "from vertices",
     "of all",
     "PSNR, dB",
     "largest",
     "memory",
+    "B/fragment",
     "fragments/s",
     "of bound",
 ];
 
 /// A row's cells.
 pub fn cells(row: &Row) -> [String; COLUMNS.len()] {
-    let all = if row.all { " (all)" } else { "" };
+    let layers = match (row.method.has_layers(), row.all) {
+        (false, _) => "–".to_owned(),
+        (true, true) => format!("{} (all)", row.layers),
+        (true, false) => row.layers.to_string(),
+    };
     [
         clean(&row.leg).into_owned(),
-        format!("{}{all}", row.layers),
+        layers,
         row.method.name().to_owned(),
         spread(row.time, 1.0, 2),
+        row.frame
+            .map_or_else(|| "–".to_owned(), |frame| format!("{:.2}", frame.median)),
         spread(row.ratio, 1.0, 2),
         decibels(row.psnr),
         match row.largest {
             0.0 => "0".to_owned(),
             largest => format!("{largest:.1e}"),
         },
-        mebibytes(row.memory),
+        match row.bands {
+            1 => mebibytes(row.memory),
+            bands => format!("{}, {bands} bands", mebibytes(row.memory)),
+        },
+        row.of_fragment
+            .map_or_else(|| "–".to_owned(), |bytes| bytes.to_string()),
         format!("{:.1} M", row.fragments_per_second * 1e-6),
         format!("{} {}", share(row.fraction), row.bound),
     ]
@@ -76,17 +89,23 @@ pub fn heading(bench: &Bench, scene: &str) -> String {
     format!("{}{}", clean(scene), facts.unwrap_or_default())
 }
 
-/// Lines for a terminal: the ceilings, and of each scene the faster method of each leg
-/// and number of layers.
+/// Lines for a terminal: the ceilings, of each scene the faster method of each leg
+/// and number of layers with all other techniques, and then the paper's tables.
 pub fn lines(bench: &Bench) -> Vec<String> {
     let mut lines: Vec<String> = bench.ceilings.iter().map(ceiling).collect();
     for scene in bench.scenes() {
         lines.push(String::new());
         lines.push(heading(bench, scene));
-        let rows = bench.fastest().filter(|row| row.scene == scene);
+        let rows = bench.shown().filter(|row| row.scene == scene);
         let mut table = vec![COLUMNS.map(str::to_owned)];
         table.extend(rows.map(cells));
         lines.extend(aligned(&table, 1));
+    }
+    for section in paper::sections(bench) {
+        lines.extend([String::new(), section.heading]);
+        let mut table = vec![section.columns];
+        table.extend(section.rows);
+        lines.extend(aligned(&table, 2));
     }
     lines
 }

@@ -7,9 +7,12 @@ use triptych_gpu::timer::{Clock, Timer};
 
 use super::Method;
 use super::error::Error;
-use super::gpu::{Refusal, sorted};
+use super::gpu::Refusal;
 use super::reference::Grid;
 use super::scene::Measured;
+
+/// Bytes of a fragment in a list: depth key and triangle.
+const ENTRY: u64 = 8;
 
 /// A leg's frame by tiles.
 pub(super) struct ByTiles<'r> {
@@ -31,23 +34,25 @@ impl<'r> ByTiles<'r> {
         options: Options<'_>,
         clock: &Clock,
     ) -> Result<Self, Refusal> {
+        let Some(opaque) = grid.opaque() else {
+            let words = "more fragments than a replay holds".to_owned();
+            return Err(Refusal::Skipped(words));
+        };
         let options = tiles::Options {
-            opaque: &grid.run.opaque,
+            opaque,
             depth_test: options.depth_test,
             background: options.background,
             capacity: None,
             drawn: tiles::DRAWN,
         };
         let drawn = tiles::run(rasterizer, options)?;
-        for band in &drawn.bands {
-            // A target that needs several is refused below.
-            let whole = drawn.bands.len() == 1;
-            if let Some(lists) = band.sorted.as_ref().filter(|_| whole) {
-                sorted(label, lists, grid)?;
+        for band in drawn.bands {
+            if let Some(lists) = band.sorted {
+                grid.sorted(label, band.band, lists)?;
             }
         }
-        let timed = Timed::new(rasterizer, &options, &grid.layers)?;
-        let (seen, must) = (u64::from(timed.fragments), grid.counts.fragments);
+        let timed = Timed::new(rasterizer, &options, &grid.shown())?;
+        let (seen, must) = (u64::from(timed.fragments), grid.fragments());
         if seen != must {
             let words = format!("{label}: tiles count {seen} fragments, must be {must}");
             return Err(Refusal::Wrong(words));
@@ -71,11 +76,11 @@ impl<'r> ByTiles<'r> {
         let mut errors = Vec::new();
         let mut wrong = None;
         self.timed.pictures(|layers, picture| {
-            let seen = picture.iter().map(|pixel| pixel.map(f64::from));
-            errors.push((layers, self.grid.error(seen)));
+            errors.push((layers, self.grid.error(&picture)));
+            let method = Method::Tiles.name();
             wrong = wrong
                 .take()
-                .or_else(|| self.grid.wrong(label, layers, Method::Tiles, picture));
+                .or_else(|| self.grid.wrong(label, layers, method, &picture));
         })?;
         match wrong {
             Some(words) => Err(Refusal::Wrong(words)),
@@ -95,34 +100,30 @@ impl<'r> ByTiles<'r> {
         Ok(())
     }
 
-    /// The frames that were measured; `opaque` is what comes before them.
-    pub(super) fn measured(&self, opaque: Option<&Measured>) -> Vec<Measured> {
+    /// The frames that were measured; `surfaces` is what comes before them.
+    pub(super) fn measured(&self, surfaces: &Measured) -> Vec<Measured> {
+        let counts = &self.grid.counts;
+        // Lists that are too long for registers are merged from one array into another.
+        let merged = u64::from(self.spans.contains(&Span::Sort));
         let frame = |(layers, error): &(u32, Error)| {
             let belongs = |span: &Span| match span {
                 Span::Shade(n) => n == layers,
                 _ => true,
             };
-            let spans = self
-                .spans
-                .iter()
-                .enumerate()
-                .filter(|(_, span)| belongs(span));
+            let spans = self.spans.iter().enumerate();
+            let spans = spans.filter(|(_, span)| belongs(span));
             let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
-            let mut parts = Vec::new();
-            let counts = &self.grid.counts;
-            let mut work = counts.by_tiles(self.timed.binned.into(), *layers);
-            if let Some(opaque) = opaque {
-                parts.extend(opaque.parts.iter().cloned());
-                work = work.and(opaque.work);
-            }
+            let mut parts = surfaces.parts.clone();
             parts.extend(spans.map(|(at, span)| (name(*span), seconds(at))));
+            let work = counts.by_tiles(self.timed.binned.into(), *layers);
             Measured {
                 method: Method::Tiles,
                 layers: *layers,
                 parts,
                 error: *error,
-                memory: counts.memory(Method::Tiles) + self.timed.bytes(),
-                work,
+                memory: counts.triangles() + self.timed.bytes(),
+                of_fragment: Some(ENTRY * (1 + merged)),
+                work: work.and(surfaces.work),
             }
         };
         self.errors.iter().map(frame).collect()

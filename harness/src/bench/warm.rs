@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use super::gpu::{Leg, Refusal};
-use super::spec::Core;
 use super::{AWAKE, WARM_UP, WARM_UP_WORK};
 
 /// How far the adapters are.
@@ -12,7 +11,7 @@ use super::{AWAKE, WARM_UP, WARM_UP_WORK};
 struct WarmUp<'a> {
     /// Rounds that are done.
     rounds: u32,
-    /// How long each adapter was at work, by its name: from a submission until it is idle.
+    /// How long each adapter was at work, by its name and its own clock.
     work: BTreeMap<&'a str, Duration>,
 }
 
@@ -29,26 +28,23 @@ impl<'a> WarmUp<'a> {
 }
 
 /// Runs rounds that do not count: [`WARM_UP`] of everything, and more on each adapter
-/// until it was at work for [`WARM_UP_WORK`], as clocks rise by time and not by rounds.
-/// The legs that `keep` refuses are left out from there on.
-pub(super) fn warm_up(
-    core: &Core<'_>,
-    legs: &mut Vec<Leg<'_>>,
-    mut keep: impl FnMut(Result<(), Refusal>) -> bool,
-) {
+/// until it was at work for [`WARM_UP_WORK`], as clocks rise by time and not by rounds: a board
+/// runs at a third of its clock in the first second. What does not count is the time in which
+/// the host prepares. The legs that `keep` refuses are left out from there on.
+pub(super) fn warm_up(legs: &mut Vec<Leg<'_>>, mut keep: impl FnMut(Result<(), Refusal>) -> bool) {
     let mut warm = WarmUp::default();
     while warm.rounds < WARM_UP || legs.iter().any(|leg| warm.is_due(leg.adapter)) {
-        if warm.rounds < WARM_UP {
-            core.warm_up(warm.rounds);
-        }
         legs.retain(|leg| {
             if !warm.is_due(leg.adapter) {
                 return true;
             }
-            let start = Instant::now();
             let result = leg.warm_up(warm.rounds);
-            warm.worked(leg.adapter, start.elapsed());
-            keep(result)
+            if let Ok(seconds) = result {
+                // A clock that stands still would never end it.
+                let least = Duration::from_millis(1);
+                warm.worked(leg.adapter, Duration::from_secs_f64(seconds).max(least));
+            }
+            keep(result.map(drop))
         });
         warm.rounds += 1;
     }

@@ -17,6 +17,7 @@ use crate::output::{complain, stdout};
 use crate::registry::{FAMILIES, RIVALS};
 use crate::text::clean;
 use triptych_gpu::kernel::Foreign;
+use triptych_spec::raster::Samples;
 
 /// Among the results, what the report reads.
 const FILE: &str = "abuffer.json";
@@ -29,23 +30,42 @@ const FILE_MAX: u64 = 1 << 26;
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
-    triptych bench abuffer                    three real meshes, every adapter and path\n  \
+    triptych bench abuffer                    the paper's tables, then three real meshes, every adapter and path\n  \
+    triptych bench abuffer --paper --adapter llvmpipe     the paper's tables alone\n  \
+    triptych bench abuffer sponza --rivals --samples 1,4 --budget 2\n  \
     triptych bench abuffer bunny --layers 1,2,4 --runs 31\n  \
     triptych bench abuffer --adapter nvidia --path compute --out results\n\n\
     Every picture is compared with the spec's before and after it is timed. Exit code 1: one \
     is outside the spec's bound. 2: nothing could be measured.")]
-#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; three real meshes without one")))]
+#[command(mut_arg("patterns", |patterns| patterns.help("Parts of scene names, scene files, or meshes; the paper's scenes and three real meshes without one")))]
 pub struct Args {
     #[command(flatten)]
     scenes: Scenes,
     #[command(flatten)]
     on: OnPaths,
-    /// Rounds that count, after two, and a second of each adapter, to warm up
-    #[arg(long, value_name = "N", default_value = "15")]
-    runs: NonZeroU32,
+    /// The paper's Table 1 and Figure 4 alone, or beside the scenes that are named
+    #[arg(long)]
+    paper: bool,
+    /// Nothing but fragments: 64 full layers, and 2^30 fragments on a board
+    #[arg(long)]
+    full: bool,
+    /// Rounds that count, after two, and a second of each adapter, to warm up [default: 21, and 5
+    /// of software drivers]
+    #[arg(long, value_name = "N")]
+    runs: Option<NonZeroU32>,
     /// Numbers of nearest layers beside all [default: 1, 2, 4, …]
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     layers: Vec<NonZeroU32>,
+    /// Samples a pixel, in turn: 1, 2, 4, 8 [default: those of the scene]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = samples)]
+    samples: Vec<u32>,
+    /// Peeling, alpha blending and others beside the lists, whatever they take
+    #[arg(long)]
+    rivals: bool,
+    /// Memory of the lists in GiB, beyond which they are made in bands [default: 1 on a software
+    /// driver, 16 on a board]
+    #[arg(long, value_name = "GIB", value_parser = gibibytes)]
+    budget: Option<u64>,
     /// The user's kernels of a stage in place of ours (repeatable); then all are checked
     #[arg(long, value_name = "STAGE=FILE")]
     kernel: Vec<String>,
@@ -106,6 +126,27 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     Ok(Verdict::Agree)
 }
 
+/// A number of samples that a pixel may have.
+fn samples(text: &str) -> Result<u32, String> {
+    let count = text.parse().ok().and_then(Samples::standard);
+    let count = count.map(Samples::count);
+    count.ok_or_else(|| "a pixel has 1, 2, 4 or 8 samples".to_owned())
+}
+
+/// Bytes of so many GiB, of which there may be a part.
+fn gibibytes(text: &str) -> Result<u64, String> {
+    const MOST: f64 = 1024.0;
+    let gib: Option<f64> = text.parse().ok();
+    let gib = gib.filter(|gib| *gib > 0.0 && *gib <= MOST);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive, and below 2^41"
+    )]
+    let bytes = gib.map(|gib| (gib * f64::from(1 << 30)) as u64);
+    bytes.ok_or_else(|| format!("a number of GiB above 0, up to {MOST}"))
+}
+
 /// Whether a frame runs all of these kernels: it starts from snapped triangles, and makes
 /// no stream of what they cover.
 fn all_run(foreign: &[Foreign]) -> anyhow::Result<()> {
@@ -129,7 +170,12 @@ impl Args {
         Ok(Options {
             scenes: self.scenes.if_any(corpus)?,
             paths: self.on.paths(),
-            runs: self.runs.get(),
+            paper: self.paper,
+            full: self.full,
+            runs: self.runs.map(NonZeroU32::get),
+            samples: self.samples.clone(),
+            rivals: self.rivals,
+            budget: self.budget,
             layers: match self.layers.is_empty() {
                 true => None,
                 false => Some(self.layers.iter().map(|n| n.get()).collect()),

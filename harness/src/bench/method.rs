@@ -1,0 +1,53 @@
+//! Techniques, and what tells them apart.
+
+use serde::{Deserialize, Serialize};
+
+/// How transparent surfaces are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// One walk over the list as it was built.
+    Insertion,
+    /// The sorted list, up to the last layer that is shown.
+    Sort,
+    /// Lists laid out by tiles, sorted while they are blended.
+    Tiles,
+    /// Depth peeling: the nearest layer behind the last, again and again.
+    Peel,
+    /// Dual depth peeling: the nearest and the farthest.
+    Dual,
+    /// Blended in the order of the triangles.
+    Alpha,
+    /// Weighted blended transparency.
+    Weighted,
+}
+
+impl Method {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Insertion => "insertion",
+            Self::Sort => "sort",
+            Self::Tiles => "tiles",
+            Self::Peel => "peel",
+            Self::Dual => "dual",
+            Self::Alpha => "alpha",
+            Self::Weighted => "weighted",
+        }
+    }
+
+    /// Whether it shows some number of the nearest layers, and its figures depend on it.
+    pub fn has_layers(self) -> bool {
+        matches!(self, Self::Insertion | Self::Sort | Self::Tiles)
+    }
+
+    /// Whether it is the paper's: linked lists, in whichever way they are put in order.
+    pub fn has_lists(self) -> bool {
+        matches!(self, Self::Insertion | Self::Sort)
+    }
+
+    /// Whether its picture is another than that of the layers in order.
+    pub fn approximates(self) -> bool {
+        matches!(self, Self::Alpha | Self::Weighted)
+    }
+}

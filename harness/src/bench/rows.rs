@@ -1,0 +1,72 @@
+//! Rows of results from what was measured.
+
+use super::reference::Grid;
+use super::run::Bound;
+use super::scene::Measured;
+use super::{Method, Row, Spread};
+use crate::scene::Loaded;
+
+/// What the rows of a leg have in common.
+pub(super) struct Timing<'t> {
+    pub(super) leg: &'t str,
+    /// Bands that the lists are made in.
+    pub(super) bands: u32,
+    /// Seconds of the vertex stages, round by round.
+    pub(super) vertices: Option<Vec<f64>>,
+}
+
+/// The rows of a leg.
+pub(super) fn rows(
+    loaded: &Loaded,
+    grid: &Grid,
+    timing: &Timing<'_>,
+    measured: &[Measured],
+    bound: &Bound<'_>,
+) -> Vec<Row> {
+    let longest = grid.counts.longest();
+    let is_reference = |m: &&Measured| m.method == Method::Sort && m.layers == longest;
+    let reference = measured.iter().find(is_reference);
+    let fragments = grid.fragments();
+    let row = |m: &Measured| {
+        let time = Spread::of(m.seconds().map(|s| 1000.0 * s));
+        let all = reference.into_iter().flat_map(Measured::seconds);
+        let frame = timing.vertices.as_ref().map(|vertices| {
+            let both = m.seconds().zip(vertices).map(|(own, before)| own + before);
+            Spread::of(both.map(|s| 1000.0 * s))
+        });
+        let (what, seconds) = bound.of(timing.leg, m.work);
+        let median = |seconds: &[f64]| 1000.0 * Spread::of(seconds.iter().copied()).median;
+        let parts = m.parts.iter();
+        Row {
+            scene: loaded.name.clone(),
+            size: [loaded.scene.size.width, loaded.scene.size.height],
+            samples: grid.primitives.samples.count(),
+            fragments,
+            longest,
+            leg: timing.leg.to_owned(),
+            clock: bound.clock(timing.leg).to_owned(),
+            method: m.method,
+            layers: m.layers,
+            all: m.layers >= longest && !m.method.approximates(),
+            runs: u32::try_from(m.seconds().count()).unwrap_or(u32::MAX),
+            time,
+            frame,
+            ratio: Spread::of(m.seconds().zip(all).map(|(own, all)| own / all)),
+            parts: parts.map(|(n, s)| ((*n).to_owned(), median(s))).collect(),
+            psnr: m.error.psnr,
+            largest: m.error.largest,
+            memory: m.memory,
+            of_fragment: m.of_fragment,
+            bands: if m.method.has_lists() {
+                timing.bands
+            } else {
+                1
+            },
+            fragments_per_second: 1000.0 * fragments as f64 / time.median,
+            bound: what.to_owned(),
+            bound_ms: 1000.0 * seconds,
+            fraction: 1000.0 * seconds / time.median,
+        }
+    };
+    measured.iter().map(row).collect()
+}

@@ -1,0 +1,74 @@
+//! `triptych bench abuffer` beyond layers of lists. No time is judged.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use super::bench::rows;
+use super::{Place, deep};
+
+/// Techniques beside lists, several samples and bands, each with its figures.
+#[test]
+fn techniques_samples_and_bands_are_measured() {
+    let place = Place::new("bench-techniques");
+    place.write("corpus/abuffer/deep/scene.toml", &deep());
+    let command = [
+        "bench",
+        "abuffer",
+        "deep",
+        "--runs",
+        "1",
+        "--layers",
+        "2",
+        "--rivals",
+        "--samples",
+        "1,4",
+        // Less than the lists of one sample take, which are 192 fragments of 32 bytes.
+        "--budget",
+        "0.000005",
+        "--adapter",
+        "llvmpipe",
+    ];
+    let ran = place.run(&command).expect(0);
+    let csv = fs::read_to_string(place.root.join("reports/out/bench/abuffer.csv"));
+    let csv = csv.expect("rows were written");
+    let rows = rows(&csv);
+    let of = |leg: &str, method: &str| {
+        let is = |r: &&BTreeMap<&str, &str>| r["leg"].ends_with(leg) && r["method"] == method;
+        rows.iter().filter(is).collect::<Vec<_>>()
+    };
+    for (leg, method, count) in [
+        ("/fragment", "peel", 1),
+        ("/fragment", "dual", 1),
+        ("/fragment", "alpha", 1),
+        ("/fragment", "weighted", 1),
+        ("/compute", "peel", 1),
+        ("/compute", "alpha", 0),
+        ("/compute", "weighted", 1),
+        ("/compute", "tiles", 2),
+        // Two layers and all with one sample, all with four.
+        ("/compute", "sort", 3),
+    ] {
+        assert_eq!(of(leg, method).len(), count, "{leg} {method}: {csv}");
+    }
+    for row in rows.iter().filter(|row| row["leg"] != "spec") {
+        let number = |name: &str| row[name].parse().unwrap_or(f64::NAN);
+        assert!(number("frame_ms") > number("time_ms"), "{row:?}");
+        let banded = ["insertion", "sort"].contains(&row["method"]);
+        assert_eq!(number("bands") > 1.0, banded, "{row:?}");
+        let exact = number("psnr_db") > 100.0;
+        let right = row["all"] == "true";
+        assert_eq!(exact, right, "{row:?}");
+    }
+    let samples: Vec<&str> = of("/fragment", "sort")
+        .iter()
+        .map(|r| r["samples"])
+        .collect();
+    assert_eq!(samples, ["1", "1", "4"]);
+    assert_eq!(of("/compute", "sort")[0]["bytes_per_fragment"], "32");
+    assert!(
+        ran.stdout.contains("abuffer/deep with 4 samples"),
+        "{}",
+        ran.stdout
+    );
+    assert!(ran.stdout.contains(" bands "), "{}", ran.stdout);
+}
