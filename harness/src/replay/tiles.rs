@@ -19,8 +19,9 @@ use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
 use crate::row::Class;
 
-/// Most triangles and fragments that a software driver's words are asked for by default.
-const WORK_MAX: u64 = 1 << 18;
+/// Most triangles and fragments that a software driver draws by default: with 64-bit integers made of
+/// words, and with native ones.
+const WORK_MAX: [u64; 2] = [1 << 14, 1 << 17];
 
 /// The stages, and how each is compared.
 const STAGES: [(&str, Class); 5] = [
@@ -53,16 +54,18 @@ pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuE
     }
 }
 
-/// Why the stages do not run on a leg. Software drivers take their time over 64-bit integers made of
-/// words: large scenes are drawn on native ones.
+/// Why the stages do not run on a leg. Software drivers take their time over them.
 fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, stage: &str) -> Option<String> {
     let spec = &leg.spec.value;
     let work = (spec.primitives.prims.len() + spec.sorted.fragments.len()) as u64;
-    let is_slow = leg.path == Path::Compute && leg.adapter.gpu.info.device_type == DeviceType::Cpu;
+    let most = match leg.adapter.gpu.info.device_type {
+        DeviceType::Cpu => WORK_MAX[usize::from(leg.path == Path::Native)],
+        _ => u64::MAX,
+    };
     let planned = leg.plan.skipped(stage);
     planned.or_else(|| match extent {
         _ if leg.from > From::Build => Some(From::GIVEN.to_owned()),
-        Extent::Small if is_slow && work > WORK_MAX => {
+        Extent::Small if work > most => {
             Some("of a scene of its size only if asked for: --rivals".to_owned())
         }
         _ => None,

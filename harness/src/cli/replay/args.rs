@@ -45,8 +45,8 @@ pub struct Args {
     /// stage's bindings as WGSL to start from
     #[arg(long, value_name = "STAGE=FILE")]
     pub(super) kernel: Vec<String>,
-    /// Compare what takes the place of linked lists (peeling, blending, tiles on a software driver's
-    /// words) on scenes of any size, not only on small ones
+    /// Compare what takes the place of linked lists (peeling, blending, tiles, other layouts) on
+    /// scenes of any size, not only on small ones
     #[arg(long)]
     rivals: bool,
     /// Run everything, whether a scene needs it or not
