@@ -195,7 +195,7 @@ fn a_kernel_that_no_frame_runs_is_refused() {
         let ran = ran.expect(2);
         let words = format!(
             "triptych: --kernel {kernel}: no frame of bench runs this stage, only opaque, build, \
-             sort, resolve, bin, jagged, shade\n"
+             sort, resolve, bin, jagged, shade, local, linked\n"
         );
         assert_eq!(ran.stderr, words);
         assert_eq!(ran.stdout, "");

@@ -25,6 +25,7 @@
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
 //! triangles is far from this bound on purpose. The spec is held to the same bytes.
 
+use super::Method;
 use triptych_gpu::abuffer::Part;
 use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{NOTHING, Opaque, opaque, visible};
@@ -195,13 +196,19 @@ impl Counts {
         Work { bytes, atomics }
     }
 
-    /// What a frame by tiles must do beside stage opaque, with so many triangles in bins.
-    pub fn by_tiles(&self, binned: u64, layers: u32) -> Work {
+    /// What a frame by tiles must do beside stage opaque, with so many triangles in bins and so many bytes
+    /// for each fragment in a list; lists that lie side by side are counted first.
+    pub fn by_tiles(&self, binned: u64, layers: u32, method: Method) -> Work {
+        let (entry, counted) = match method {
+            Method::Linked => (16, 0),
+            Method::Local => (0, 0),
+            _ => (8, 1),
+        };
         let (p, triangles) = (self.pixels, self.transparent + self.opaque);
         let bin = 2 * (36 * self.transparent + 16 * triangles) + 4 * binned;
-        let place = 40 * binned + 4 * p + 12 * p + 28 * p;
-        let fill = 40 * binned + 4 * p + 28 * p + 8 * self.fragments;
-        let shade = 16 * p + 8 * self.fragments + 24 * p + 16 * self.shown(layers);
+        let place = counted * (40 * binned + 4 * p + 12 * p + 28 * p);
+        let fill = 40 * binned + 4 * p + 28 * p + entry * self.fragments;
+        let shade = 16 * p + entry * self.fragments + 24 * p + 16 * self.shown(layers);
         Work {
             bytes: bin + place + fill + shade,
             atomics: 2 * binned,
@@ -286,7 +293,7 @@ mod tests {
         assert_eq!(work(Part::Sort), must(520 + 20 * 2 * 5 * 3, 0));
         assert_eq!(work(Part::Resolve), must(700 + 352, 0));
         let tiles = 2 * (36 * 2 + 16 * 3) + 84 * 7 + 116 * 5 + 16 * 11 + 16 * 5;
-        assert_eq!(counts.by_tiles(7, 2), must(tiles, 14));
+        assert_eq!(counts.by_tiles(7, 2, Method::Tiles), must(tiles, 14));
         assert_eq!(counts.longest(), 5);
         assert_eq!(counts.gone_through(3), must(3 * (120 + 144 + 80) + 120, 0));
         assert_eq!(counts.triangles(), 156);

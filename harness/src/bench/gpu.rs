@@ -58,8 +58,8 @@ pub(super) struct Leg<'r> {
     /// From vertices to triangles, if the device can do it by itself.
     pub(super) vertices: Option<Vertices<'r>>,
     timed: Timed<'r, 'r>,
-    /// The same frame by tiles, where the leg draws without the hardware's rasteriser.
-    pub(super) tiles: Option<ByTiles<'r>>,
+    /// The same frame by tiles, in several ways, where the leg draws without the hardware's rasteriser.
+    pub(super) tiles: Vec<ByTiles<'r>>,
     /// Other techniques.
     pub(super) beside: Vec<Beside<'r>>,
     timer: Timer,
@@ -124,7 +124,7 @@ impl<'r> Leg<'r> {
             grid,
             vertices: None,
             timed,
-            tiles: None,
+            tiles: Vec::new(),
             beside: Vec::new(),
             parts,
             errors: Vec::new(),
@@ -137,7 +137,7 @@ impl<'r> Leg<'r> {
     /// Compares every picture with the spec's.
     pub(super) fn compare(&self) -> Result<(), Refusal> {
         self.compare_lists()?;
-        if let Some(tiles) = &self.tiles {
+        for tiles in &self.tiles {
             tiles.compare(&self.label)?;
         }
         for beside in &self.beside {
@@ -170,7 +170,7 @@ impl<'r> Leg<'r> {
         if let Some(Vertices { timed, timer, .. }) = &self.vertices {
             seconds += timed.time(timer)?;
         }
-        if let Some(tiles) = &self.tiles {
+        for tiles in &self.tiles {
             seconds += tiles.time()?.iter().sum::<f64>();
         }
         for beside in &self.beside {
@@ -199,7 +199,7 @@ impl<'r> Leg<'r> {
         for beside in &mut self.beside {
             beside.round()?;
         }
-        self.tiles.as_mut().map_or(Ok(()), ByTiles::round)
+        self.tiles.iter_mut().try_for_each(ByTiles::round)
     }
 
     /// What a part that makes a picture stands for.

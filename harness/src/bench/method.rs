@@ -12,6 +12,10 @@ pub enum Method {
     Sort,
     /// Lists laid out by tiles, sorted while they are blended.
     Tiles,
+    /// Linked lists by tiles, with a counter for each.
+    Linked,
+    /// By tiles, without lists in memory.
+    Local,
     /// Depth peeling: the nearest layer behind the last, again and again.
     Peel,
     /// Dual depth peeling: the nearest and the farthest.
@@ -23,12 +27,17 @@ pub enum Method {
 }
 
 impl Method {
+    /// Those that draw tile by tile.
+    pub const BY_TILES: [Self; 3] = [Self::Tiles, Self::Linked, Self::Local];
+
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Insertion => "insertion",
             Self::Sort => "sort",
             Self::Tiles => "tiles",
+            Self::Linked => "linked",
+            Self::Local => "local",
             Self::Peel => "peel",
             Self::Dual => "dual",
             Self::Alpha => "alpha",
@@ -38,7 +47,7 @@ impl Method {
 
     /// Whether it shows some number of the nearest layers, and its figures depend on it.
     pub fn has_layers(self) -> bool {
-        matches!(self, Self::Insertion | Self::Sort | Self::Tiles)
+        self.has_lists() || Self::BY_TILES.contains(&self)
     }
 
     /// Whether it is the paper's: linked lists, in whichever way they are put in order.

@@ -105,7 +105,7 @@ pub(super) const TABLE: &[Technique] = &[
     },
     Technique {
         name: "lists by tiles",
-        methods: &[Method::Tiles],
+        methods: &Method::BY_TILES,
         fps: [None, None],
     },
 ];

@@ -269,8 +269,13 @@ fn leg<'r>(
     leg.vertices = done.keep(&format!("{what}: vertex stages"), vertices);
     let one = grid.primitives.samples.count() == 1;
     if one && rasterizer.path != Path::Fragment {
-        let tiles = ByTiles::new(label, rasterizer, grid, start.options, start.clock);
-        leg.tiles = done.keep(&format!("{what}: tiles"), tiles);
+        for method in Method::BY_TILES {
+            let (options, clock) = (start.options, start.clock);
+            let tiles = ByTiles::new(method, label, rasterizer, grid, options, clock);
+            let name = method.name();
+            leg.tiles
+                .extend(done.keep(&format!("{what}: {name}"), tiles));
+        }
     }
     if let Some(run) = grid.whole().filter(|_| one && asked.rivals) {
         let given = rivals::Given {

@@ -10,12 +10,17 @@ use super::error::Error;
 use super::gpu::Refusal;
 use super::reference::Grid;
 use super::scene::Measured;
+use crate::replay::tiles::longest;
 
 /// Bytes of a fragment in a list: depth key and triangle.
 const ENTRY: u64 = 8;
 
+/// The same and a link, in a node.
+const NODE: u64 = 16;
+
 /// A leg's frame by tiles.
 pub(super) struct ByTiles<'r> {
+    method: Method,
     grid: &'r Grid,
     timed: Timed<'r, 'r>,
     timer: Timer,
@@ -28,6 +33,7 @@ pub(super) struct ByTiles<'r> {
 impl<'r> ByTiles<'r> {
     /// Sets it up, and compares every picture.
     pub(super) fn new(
+        method: Method,
         label: &str,
         rasterizer: &'r Rasterizer<'r>,
         grid: &'r Grid,
@@ -45,21 +51,32 @@ impl<'r> ByTiles<'r> {
             capacity: None,
             drawn: tiles::DRAWN,
         };
-        let drawn = tiles::run(rasterizer, options)?;
-        for band in drawn.bands {
+        // What is blended at once leaves no lists: its pictures are compared alone.
+        let bands = match method {
+            Method::Linked => tiles::run_linked(rasterizer, options, longest)?.bands,
+            Method::Local => Vec::new(),
+            _ => tiles::run(rasterizer, options)?.bands,
+        };
+        for band in bands {
             if let Some(lists) = band.sorted {
                 grid.sorted(label, band.band, lists)?;
             }
         }
-        let timed = Timed::new(rasterizer, &options, &grid.shown())?;
+        let make = match method {
+            Method::Linked => Timed::linked,
+            Method::Local => Timed::local,
+            _ => Timed::new,
+        };
+        let timed = make(rasterizer, &options, &grid.shown())?;
         let (seen, must) = (u64::from(timed.fragments), grid.fragments());
-        if seen != must {
+        if seen != must && method != Method::Local {
             let words = format!("{label}: tiles count {seen} fragments, must be {must}");
             return Err(Refusal::Wrong(words));
         }
         let spans: Vec<Span> = timed.spans().collect();
         let count = u32::try_from(spans.len()).expect("a few parts");
         let mut tiles = Self {
+            method,
             grid,
             timer: Timer::new(rasterizer.gpu, clock, count)?,
             timed,
@@ -77,7 +94,7 @@ impl<'r> ByTiles<'r> {
         let mut wrong = None;
         self.timed.pictures(|layers, picture| {
             errors.push((layers, self.grid.error(&picture)));
-            let method = Method::Tiles.name();
+            let method = self.method.name();
             wrong = wrong
                 .take()
                 .or_else(|| self.grid.wrong(label, layers, method, &picture));
@@ -107,7 +124,7 @@ impl<'r> ByTiles<'r> {
         let merged = u64::from(self.spans.contains(&Span::Sort));
         let frame = |(layers, error): &(u32, Error)| {
             let belongs = |span: &Span| match span {
-                Span::Shade(n) => n == layers,
+                Span::Shade(n) | Span::Local(n) => n == layers,
                 _ => true,
             };
             let spans = self.spans.iter().enumerate();
@@ -115,14 +132,18 @@ impl<'r> ByTiles<'r> {
             let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
             let mut parts = surfaces.parts.clone();
             parts.extend(spans.map(|(at, span)| (name(*span), seconds(at))));
-            let work = counts.by_tiles(self.timed.binned.into(), *layers);
+            let work = counts.by_tiles(self.timed.binned.into(), *layers, self.method);
             Measured {
-                method: Method::Tiles,
+                method: self.method,
                 layers: *layers,
                 parts,
                 error: *error,
                 memory: counts.triangles() + self.timed.bytes(),
-                of_fragment: Some(ENTRY * (1 + merged)),
+                of_fragment: match self.method {
+                    Method::Linked => Some(NODE),
+                    Method::Local => None,
+                    _ => Some(ENTRY * (1 + merged)),
+                },
                 work: work.and(surfaces.work),
             }
         };
@@ -137,6 +158,7 @@ fn name(span: Span) -> &'static str {
         Span::Place => "place",
         Span::Fill => "fill",
         Span::Sort => "sort",
-        Span::Shade(_) | Span::Local(_) => "blend",
+        Span::Shade(_) => "blend",
+        Span::Local(_) => "local",
     }
 }

@@ -211,7 +211,7 @@ impl GpuLeg<'_> {
 }
 
 /// Fragments of the longest list; `None` if links lead astray.
-fn longest(lists: &Lists) -> Option<u32> {
+pub(crate) fn longest(lists: &Lists) -> Option<u32> {
     let flat = compare::order::flatten(lists)?;
     flat.offsets.windows(2).map(|run| run[1] - run[0]).max()
 }

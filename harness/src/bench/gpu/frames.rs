@@ -28,7 +28,7 @@ impl Leg<'_> {
             let error = self.grid.error_of_spec(0);
             frames.push(self.frame(Method::Insertion, (0, error), is_before));
         }
-        if let Some(tiles) = &self.tiles {
+        for tiles in &self.tiles {
             frames.extend(tiles.measured(&self.surfaces()));
         }
         let surfaces = self.surfaces();

@@ -182,7 +182,7 @@ fn frames(bench: &Bench) -> Section {
             };
             let adapter = hardware.trim_end_matches("fragment");
             for leg in legs(bench).filter(|leg| leg.starts_with(adapter)) {
-                for (name, methods) in [("linked list", &lists[..]), ("tiles", &[Method::Tiles])] {
+                for (name, methods) in [("linked list", &lists[..]), ("tiles", &Method::BY_TILES)] {
                     let Some(row) = bench.best((scene, leg), methods, None) else {
                         continue;
                     };
