@@ -55,9 +55,11 @@ fn techniques_samples_and_bands_are_measured() {
         assert!(number("frame_ms") > number("time_ms"), "{row:?}");
         let banded = ["insertion", "sort"].contains(&row["method"]);
         assert_eq!(number("bands") > 1.0, banded, "{row:?}");
-        let exact = number("psnr_db") > 100.0;
-        let right = row["all"] == "true";
-        assert_eq!(exact, right, "{row:?}");
+        // These may be right by chance, as the quads come in the order of their depths.
+        if !["alpha", "weighted"].contains(&row["method"]) {
+            let exact = number("psnr_db") > 100.0;
+            assert_eq!(exact, row["all"] == "true", "{row:?}");
+        }
     }
     let samples: Vec<&str> = of("/fragment", "sort")
         .iter()
