@@ -9,6 +9,9 @@
 
 const FROM_BACK: bool = false;
 
+// Triangles of the longest bin that is in order. Twin: LONG in sort.wgsl.
+const BIN_SORTED: u32 = 512u;
+
 // Fragments that wait.
 const WINDOW: u32 = 8u;
 
@@ -78,16 +81,29 @@ fn put_small(tile: u32, pixel: u32, entry: Listed, fill: bool) {
 }
 
 fn take_small(own: ptr<function, Pixel>) {
-    var at = atomicLoad(&first_small[(*own).lane]);
-    while at != NOTHING {
-        let small = smalls[at];
-        put(own, small.entry, true);
-        at = small.next;
+    // In order: which tiles are left does not depend on how invocations come.
+    let first = atomicLoad(&first_small[(*own).lane]);
+    var next = next_small(first, false, LAST);
+    while any(next != LAST) {
+        put(own, next, true);
+        next = next_small(first, true, next);
     }
     atomicStore(&first_small[(*own).lane], NOTHING);
     if (*own).lane == 0u {
         atomicStore(&all_smalls, 0u);
     }
+}
+
+// The nearest of a list of small triangles' fragments, or the nearest behind another one.
+fn next_small(first: u32, is_behind: bool, other: Listed) -> Listed {
+    var found = LAST;
+    for (var at = first; at != NOTHING; at = smalls[at].next) {
+        let entry = smalls[at].entry;
+        if less(entry, found) && (!is_behind || less(other, entry)) {
+            found = entry;
+        }
+    }
+    return found;
 }
 
 fn leave_pixel(own: Pixel) {
@@ -183,7 +199,8 @@ fn draw_local(tile: u32, lane: u32) {
     finish(&own, 6u, p.g);
     finish(&own, 7u, p.h);
     let bin = bin_of(tile);
-    let is_cut = bin.y - bin.x > tiled.count;
+    // Longer bins are in whatever order invocations came.
+    let is_cut = bin.y - bin.x > min(tiled.count, BIN_SORTED);
     if own.held.is_out_of_order || is_cut {
         atomicStore(&left_over, 1u);
     }
