@@ -196,14 +196,9 @@ impl Counts {
         Work { bytes, atomics }
     }
 
-    /// What a frame by tiles must do beside stage opaque, with so many triangles in bins and so many bytes
-    /// for each fragment in a list; lists that lie side by side are counted first.
+    /// What a frame by tiles must do beside stage opaque, with so many triangles in bins.
     pub fn by_tiles(&self, binned: u64, layers: u32, method: Method) -> Work {
-        let (entry, counted) = match method {
-            Method::Linked => (16, 0),
-            Method::Local => (0, 0),
-            _ => (8, 1),
-        };
+        let (entry, counted) = (method.entry(), u64::from(method == Method::Tiles));
         let (p, triangles) = (self.pixels, self.transparent + self.opaque);
         let bin = 2 * (36 * self.transparent + 16 * triangles) + 4 * binned;
         let place = counted * (40 * binned + 4 * p + 12 * p + 28 * p);

@@ -45,6 +45,15 @@ impl Method {
         }
     }
 
+    /// Of those that draw tile by tile, bytes of a fragment in a list.
+    pub fn entry(self) -> u64 {
+        match self {
+            Self::Linked => 16,
+            Self::Local => 0,
+            _ => 8,
+        }
+    }
+
     /// Whether it shows some number of the nearest layers, and its figures depend on it.
     pub fn has_layers(self) -> bool {
         self.has_lists() || Self::BY_TILES.contains(&self)

@@ -1,7 +1,6 @@
 //! One scene on every leg: set up, compared, and measured side by side.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use std::collections::btree_map::{BTreeMap, Entry};
 
 use triptych_gpu::abuffer;
 use triptych_gpu::raster::{Path, Rasterizer};
@@ -243,8 +242,7 @@ fn leg<'r>(
         grid,
         station,
     } = prepared;
-    let scene = &loaded.scene;
-    let what = format!("{}: {label}", loaded.name);
+    let (scene, what) = (&loaded.scene, format!("{}: {label}", loaded.name));
     let start = Start {
         label: label.clone(),
         rasterizer,
@@ -270,11 +268,9 @@ fn leg<'r>(
     let one = grid.primitives.samples.count() == 1;
     if one && rasterizer.path != Path::Fragment {
         for method in Method::BY_TILES {
-            let (options, clock) = (start.options, start.clock);
-            let tiles = ByTiles::new(method, label, rasterizer, grid, options, clock);
-            let name = method.name();
+            let name = format!("{what}: {}", method.name());
             leg.tiles
-                .extend(done.keep(&format!("{what}: {name}"), tiles));
+                .extend(done.keep(&name, ByTiles::new(method, &start)));
         }
     }
     if let Some(run) = grid.whole().filter(|_| one && asked.rivals) {

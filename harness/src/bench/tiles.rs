@@ -1,22 +1,14 @@
 //! The same frame by tiles: first its pictures are compared, then it is timed.
 
-use triptych_gpu::abuffer::Options;
-use triptych_gpu::raster::Rasterizer;
 use triptych_gpu::tiles::{self, Span, Timed};
-use triptych_gpu::timer::{Clock, Timer};
+use triptych_gpu::timer::Timer;
 
 use super::Method;
 use super::error::Error;
-use super::gpu::Refusal;
+use super::gpu::{Refusal, Start};
 use super::reference::Grid;
 use super::scene::Measured;
 use crate::replay::tiles::longest;
-
-/// Bytes of a fragment in a list: depth key and triangle.
-const ENTRY: u64 = 8;
-
-/// The same and a link, in a node.
-const NODE: u64 = 16;
 
 /// A leg's frame by tiles.
 pub(super) struct ByTiles<'r> {
@@ -32,22 +24,16 @@ pub(super) struct ByTiles<'r> {
 
 impl<'r> ByTiles<'r> {
     /// Sets it up, and compares every picture.
-    pub(super) fn new(
-        method: Method,
-        label: &str,
-        rasterizer: &'r Rasterizer<'r>,
-        grid: &'r Grid,
-        options: Options<'_>,
-        clock: &Clock,
-    ) -> Result<Self, Refusal> {
+    pub(super) fn new(method: Method, start: &Start<'r>) -> Result<Self, Refusal> {
+        let (label, rasterizer, grid) = (&start.label, start.rasterizer, start.grid);
         let Some(opaque) = grid.opaque() else {
             let words = "more fragments than a replay holds".to_owned();
             return Err(Refusal::Skipped(words));
         };
         let options = tiles::Options {
             opaque,
-            depth_test: options.depth_test,
-            background: options.background,
+            depth_test: start.options.depth_test,
+            background: start.options.background,
             capacity: None,
             drawn: tiles::DRAWN,
         };
@@ -78,7 +64,7 @@ impl<'r> ByTiles<'r> {
         let mut tiles = Self {
             method,
             grid,
-            timer: Timer::new(rasterizer.gpu, clock, count)?,
+            timer: Timer::new(rasterizer.gpu, start.clock, count)?,
             timed,
             spans,
             errors: Vec::new(),
@@ -121,7 +107,7 @@ impl<'r> ByTiles<'r> {
     pub(super) fn measured(&self, surfaces: &Measured) -> Vec<Measured> {
         let counts = &self.grid.counts;
         // Lists that are too long for registers are merged from one array into another.
-        let merged = u64::from(self.spans.contains(&Span::Sort));
+        let merged = self.method == Method::Tiles && self.spans.contains(&Span::Sort);
         let frame = |(layers, error): &(u32, Error)| {
             let belongs = |span: &Span| match span {
                 Span::Shade(n) | Span::Local(n) => n == layers,
@@ -140,9 +126,8 @@ impl<'r> ByTiles<'r> {
                 error: *error,
                 memory: counts.triangles() + self.timed.bytes(),
                 of_fragment: match self.method {
-                    Method::Linked => Some(NODE),
                     Method::Local => None,
-                    _ => Some(ENTRY * (1 + merged)),
+                    method => Some(method.entry() * (1 + u64::from(merged))),
                 },
                 work: work.and(surfaces.work),
             }
