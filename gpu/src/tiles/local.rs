@@ -11,6 +11,7 @@ use super::{DRAWN, Options, Tiled, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
+use crate::lists::LONG;
 use crate::raster::{Attempts, Rasterizer, SATURATED};
 
 /// What came out of all bands.
@@ -65,7 +66,8 @@ impl Room<'_, '_> {
     /// Draws all tiles, up to so many layers; a tile of more than so many triangles is left.
     pub(super) fn local(&self, drawn: u32, layers: u32) -> Result<Ready, GpuError> {
         let tiled = Tiled {
-            count: drawn,
+            // Longer bins are in no order; llvmpipe leaves loops that are too long.
+            count: drawn.min(LONG),
             layers,
             ..self.of_tiles()
         };
