@@ -23,8 +23,7 @@ const EOL: u32 = 0xffffffffu;
 const STEPS: u32 = 16384u;
 
 // Times that an invocation finds nobody to have been first, and yet hangs no node: a weak exchange may
-// fail for no reason. What stands in for a pixel that is not covered, so that its neighbours have four,
-// exchanges nothing at all, and would go on for ever.
+// fail for no reason.
 const TRIES: u32 = 16u;
 
 var<private> steps_left: u32 = STEPS;
@@ -133,14 +132,28 @@ fn ordered_ties(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
+// Whether a fragment's pixel is covered. Hardware draws squares of four pixels; for those beside the
+// triangle an invocation stands in whose atomics do nothing and give back anything, so that it would go
+// on until it has no steps left. The hardware's coverage is that of the exact test: stage cover says so.
+fn is_drawn(fragment: Fragment) -> bool {
+    let lowest = min(firstTrailingBit(fragment.mask), SAMPLES_MAX - 1u);
+    return key_at(fragment.prim, fragment.pixel, lowest, NOTHING) != NOTHING;
+}
+
 @fragment
 fn ordered_fragment(drawn: Drawn) {
-    insert(fragment_of(drawn));
+    let fragment = fragment_of(drawn);
+    if is_drawn(fragment) {
+        insert(fragment);
+    }
 }
 
 @fragment
 fn ordered_ties_fragment(drawn: Drawn) {
-    settle(fragment_of(drawn));
+    let fragment = fragment_of(drawn);
+    if is_drawn(fragment) {
+        settle(fragment);
+    }
 }
 
 // The list over what lies behind it. A list that was built has at most STEPS nodes.

@@ -25,6 +25,9 @@ use crate::row::Class;
 /// Most triangles and fragments that a default run has on a software driver.
 const WORK_MAX: u64 = 1 << 15;
 
+/// Most slots of the arrays of all pixels.
+const SLOTS_MAX: u64 = 1 << 18;
+
 /// The same where each fragment goes along its list: steps of all.
 const STEPS_MAX: u64 = 1 << 18;
 
@@ -93,9 +96,25 @@ fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, layout: Layout) -> Option<St
     }
     let is_slow = leg.adapter.gpu.info.device_type == DeviceType::Cpu;
     let work = (spec.primitives.prims.len() + spec.sorted.fragments.len()) as u64;
-    let is_large = work > WORK_MAX || layout == Layout::Ordered && steps(&spec.sorted) > STEPS_MAX;
+    let is_large = work > WORK_MAX
+        || match layout {
+            Layout::Bucket => slots(&spec.sorted) > SLOTS_MAX,
+            Layout::Ordered => steps(&spec.sorted) > STEPS_MAX,
+            _ => false,
+        };
     (extent == Extent::Small && is_slow && is_large)
         .then(|| "of a scene of its size only if asked for: --rivals".to_owned())
+}
+
+/// Slots of arrays that are as long as the longest list.
+fn slots(sorted: &Sorted) -> u64 {
+    let lengths = || {
+        sorted
+            .offsets
+            .windows(2)
+            .map(|run| u64::from(run[1] - run[0]))
+    };
+    lengths().max().unwrap_or(0) * lengths().count() as u64
 }
 
 /// Steps of all fragments along their lists.
