@@ -58,25 +58,24 @@ const WAITING: usize = 8;
 
 /// Mutants as they are listed, but those of one lab and of the other by turns.
 fn by_turns(all: Vec<Mutant>) -> Vec<Mutant> {
-    let (drawn, others): (Vec<_>, Vec<_>) = all.into_iter().partition(is_drawn);
-    let [a, b] = [drawn.len(), others.len()];
+    let (first, second): (Vec<_>, Vec<_>) = all.into_iter().partition(|m| lab_of(m) == 0);
+    let [a, b] = [first.len(), second.len()];
     let place = |of: usize| move |(i, mutant)| ((2 * i + 1) * (a + b - of), mutant);
-    let drawn = drawn.into_iter().enumerate().map(place(a));
-    let mut all: Vec<_> = drawn
-        .chain(others.into_iter().enumerate().map(place(b)))
+    let first = first.into_iter().enumerate().map(place(a));
+    let mut all: Vec<_> = first
+        .chain(second.into_iter().enumerate().map(place(b)))
         .collect();
     all.sort_by_key(|(place, _)| *place);
     all.into_iter().map(|(_, mutant)| mutant).collect()
 }
 
-/// Whether it is run on a scene of triangles alone.
-fn is_drawn(mutant: &Mutant) -> bool {
-    let of = |family| mutant.scene.starts_with(family);
-    !["grid/", "rsm/", "ldm/"].into_iter().any(of)
+/// Mutants on maps, which are few and large, take as long as all others.
+fn lab_of(mutant: &Mutant) -> usize {
+    usize::from(mutant.scene.starts_with("ldm/"))
 }
 
-/// Two labs: a driver compiles on one core, and most of the time is that. Their scenes have
-/// few kernels in common, so little is compiled twice.
+/// Two labs: a driver compiles on one core, and runs most kernels there. Their scenes have few
+/// kernels in common, so little is compiled twice.
 struct Cage {
     labs: [Mutex<State>; 2],
     /// Where mutants stand in the table.
@@ -99,7 +98,7 @@ impl Cage {
     }
 
     fn kill(&self, mutant: &Mutant) -> Result<(), Failed> {
-        let mut state = self.state(usize::from(!is_drawn(mutant)));
+        let mut state = self.state(lab_of(mutant));
         let start = Instant::now();
         let mut lab = match state.lab.take() {
             Some(lab) => lab,
