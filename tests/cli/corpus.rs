@@ -24,9 +24,6 @@ fn list_names_every_scene_with_its_purpose() {
     assert_eq!(mesh.stdout, "shape  a mesh by itself, seen whole\n");
 }
 
-/// Stages of the lists in other layouts.
-const LAYOUTS: [&str; 6] = ["bucket", "precalc", "rank", "packed", "regions", "ordered"];
-
 #[test]
 fn plan_says_what_runs_and_why() {
     let place = Place::new("plan");
@@ -48,7 +45,7 @@ fn plan_says_what_runs_and_why() {
             "cover" | "opaque" => "skip",
             // Scenes of raster are about coverage.
             rival if triptych_harness::registry::RIVALS.contains(&rival) => "skip",
-            layout if LAYOUTS.contains(&layout) => "skip",
+            layout if layouts.contains(&layout) => "skip",
             _ => "run",
         };
         assert_eq!(pass[..2], [verb, stage.name], "{}", ran.stdout);
