@@ -86,6 +86,21 @@ impl Band {
         ])
     }
 
+    /// The whole target in bands of at most so many pixels, top to bottom; a single row may have more.
+    pub fn of_pixels(size: Size, most: u64) -> Vec<Self> {
+        let mut left = vec![Self::whole(size)];
+        let mut bands = Vec::new();
+        while let Some(band) = left.pop() {
+            match band.halves() {
+                Some([upper, lower]) if u64::from(band.pixels(size)) > most => {
+                    left.extend([lower, upper]);
+                }
+                _ => bands.push(band),
+            }
+        }
+        bands
+    }
+
     /// Number of pixels.
     pub fn pixels(self, size: Size) -> u32 {
         self.rows * size.width

@@ -17,6 +17,7 @@ pub mod kernel;
 pub mod layouts;
 pub mod ldm;
 pub mod lists;
+mod named;
 pub mod pass;
 pub mod raster;
 pub mod rsm;

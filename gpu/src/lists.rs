@@ -1,4 +1,10 @@
-//! Lists as runs of one array: what hosts of `scan.wgsl` and `sort.wgsl` need to know.
+//! What hosts of lists need to know: runs of one array, as of `scan.wgsl` and `sort.wgsl`; kernels that
+//! follow lists and ask for another dispatch.
+
+use std::time::Duration;
+
+use crate::context::Gpu;
+use crate::error::GpuError;
 
 /// Lists of a workgroup in a scan. Twin: `TILE` in `scan.wgsl`.
 pub const TILE: u32 = 1024;
@@ -20,4 +26,36 @@ pub(crate) fn long_passes(
     let merges = merges.take_while(move |run| *run < longest);
     let first = is_long.then_some((runs, 0));
     first.into_iter().chain(merges.map(move |run| (merge, run)))
+}
+
+/// Bytes before the pixels' progress, which say whether any asks for another dispatch. Twins: `Work` in
+/// WGSL.
+pub(crate) const HEADER: u64 = 4;
+
+/// Dispatches a stage until no pixel asks for more, from no progress on; `dispatch` gives its time. What
+/// needs more than `most` follows a list that does not end.
+pub(crate) fn until_done(
+    gpu: &Gpu,
+    progress: &wgpu::Buffer,
+    (stage, most): (&'static str, u64),
+    dispatch: impl Fn() -> Result<Duration, GpuError>,
+) -> Result<Duration, GpuError> {
+    let clear = |bytes| {
+        let mut encoder = gpu.encoder();
+        encoder.clear_buffer(progress, 0, bytes);
+        gpu.submit(encoder)
+    };
+    let mut time = Duration::ZERO;
+    clear(None)?;
+    for _ in 0..most {
+        clear(Some(HEADER))?;
+        time += dispatch()?;
+        if gpu.word(progress, 0)? == 0 {
+            return Ok(time);
+        }
+    }
+    Err(GpuError::Endless {
+        adapter: gpu.name.clone(),
+        stage,
+    })
 }

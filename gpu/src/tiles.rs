@@ -21,8 +21,7 @@ use triptych_spec::tiles::SIDE;
 use crate::abuffer::BandResult;
 use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
-use crate::raster::{Attempts, Rasterizer};
-use attempt::Tried;
+use crate::raster::Rasterizer;
 pub use linked::{Linked, Region, run as run_linked};
 pub use local::{FINISHED, Local, run as run_local};
 pub use rows::{CONTIGUOUS, IN_ORDER, List};
@@ -100,15 +99,9 @@ pub struct Times {
 /// Limits by name, WGSL errors, and whatever the device reports.
 pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Drawn, GpuError> {
     let mut result = Drawn::default();
-    let need = room::NEED;
-    let mut attempts = Attempts::new(rasterizer.gpu, rasterizer.size, need, options.capacity);
-    while let Some((band, capacity)) = attempts.next() {
-        match attempt::run(rasterizer, &options, band, capacity) {
-            Ok(Tried::Done(part)) => result.add(*part),
-            Ok(Tried::Needs(fragments)) => attempts.overflowed(band, fragments)?,
-            Err(error) => attempts.failed(band, capacity, error)?,
-        }
-    }
+    let draw = |band, capacity| attempt::run(rasterizer, &options, band, capacity);
+    let add = |part| result.add(part);
+    attempt::in_bands(rasterizer, room::NEED, options.capacity, draw, add)?;
     Ok(result)
 }
 

@@ -7,7 +7,7 @@ use triptych_gpu::abuffer::rivals::{Given, Single, once};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::Path;
 use triptych_harness::compare::image;
-use triptych_harness::observe::Observed;
+use triptych_harness::observe::{Observed, Spec};
 use triptych_harness::plan::{Asked, Plan};
 use triptych_harness::replay::gpu::{Adapter, Adapters, Drawn, From, GpuLeg};
 use triptych_harness::replay::rows::Rows;
@@ -55,24 +55,39 @@ fn layers() -> impl Strategy<Value = Layers> {
     coloured(soup)
 }
 
+/// What the spec makes of them.
+fn spec_of(layers: &Layers, plan: &Plan) -> Result<Observed<Spec, SpecRun>, TestCaseError> {
+    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), plan);
+    Ok(Observed::new("spec", run.map_err(TestCaseError::fail)?))
+}
+
+/// An adapter's path from the spec's triangles on; with `few`, the first attempt overflows, unless there
+/// is next to nothing.
+fn leg<'a>(
+    layers: &'a Layers,
+    (adapter, path): (&'a Adapter, Path),
+    (plan, spec): (&'a Plan, &'a Observed<Spec, SpecRun>),
+    few: bool,
+) -> GpuLeg<'a> {
+    GpuLeg {
+        adapter,
+        path,
+        scene: &layers.scene,
+        spec,
+        plan,
+        capacity: few.then_some(spec.value.lists.attempts / 2),
+        from: From::Cover,
+    }
+}
+
 /// Runs all stages and compares each.
 fn agrees(layers: &Layers, adapter: &Adapter, path: Path, skip: bool) -> Result<(), TestCaseError> {
     if path == Path::Native && adapter.native.is_none() {
         return Ok(());
     }
     let plan = Plan::new(&layers.scene, skip);
-    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
-    let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
-    let leg = GpuLeg {
-        adapter,
-        path,
-        scene: &layers.scene,
-        spec: &spec,
-        plan: &plan,
-        // The first attempt overflows, unless there is next to nothing.
-        capacity: Some(spec.value.lists.attempts / 2),
-        from: From::Cover,
-    };
+    let spec = spec_of(layers, &plan)?;
+    let leg = leg(layers, (adapter, path), (&plan, &spec), true);
     let mut rows = Rows::new("law", "abuffer");
     let failed = |e: GpuError| TestCaseError::fail(e.to_string());
     leg.run(&mut rows).map_err(failed)?;
@@ -168,17 +183,8 @@ fn rivals_agree(layers: &Layers, adapter: &Adapter, path: Path) -> Result<(), Te
         defocus: Some(lens),
     };
     let plan = Plan::asking(&layers.scene, true, asked);
-    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
-    let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
-    let leg = GpuLeg {
-        adapter,
-        path,
-        scene: &layers.scene,
-        spec: &spec,
-        plan: &plan,
-        capacity: None,
-        from: From::Cover,
-    };
+    let spec = spec_of(layers, &plan)?;
+    let leg = leg(layers, (adapter, path), (&plan, &spec), false);
     let mut rows = Rows::new("law", "abuffer");
     let failed = |e: GpuError| TestCaseError::fail(e.to_string());
     rivals::run(&leg, Extent::All, &mut rows).map_err(failed)?;
@@ -234,17 +240,8 @@ fn layouts_agree(layers: &Layers, adapter: &Adapter, path: Path) -> Result<(), T
         ..Asked::default()
     };
     let plan = Plan::asking(&layers.scene, true, asked);
-    let run = SpecRun::new(&layers.scene, layers.primitives.clone(), &plan);
-    let spec = Observed::new("spec", run.map_err(TestCaseError::fail)?);
-    let leg = GpuLeg {
-        adapter,
-        path,
-        scene: &layers.scene,
-        spec: &spec,
-        plan: &plan,
-        capacity: Some(spec.value.lists.attempts / 2),
-        from: From::Cover,
-    };
+    let spec = spec_of(layers, &plan)?;
+    let leg = leg(layers, (adapter, path), (&plan, &spec), true);
     let mut rows = Rows::new("law", "layouts");
     let failed = |e: GpuError| TestCaseError::fail(e.to_string());
     layouts::run(&leg, Extent::All, &mut rows).map_err(failed)?;

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use triptych_spec::abuffer::{Lists, Opaque, Order};
 
-use super::buffers::{Buffers, HEADER};
+use super::buffers::Buffers;
 use super::{BandResult, Options, Times};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
+use crate::lists::until_done;
 use crate::raster::{Rasterizer, per_pixel};
 
 /// Steps along a list within one dispatch. Twin: `STEPS` in `abuffer.wgsl`.
@@ -187,19 +188,8 @@ impl Run<'_, '_> {
         longest: u32,
         b: &Buffers,
     ) -> Result<Duration, GpuError> {
-        let gpu = self.gpu();
-        let mut time = Duration::ZERO;
-        clear(gpu, &b.progress, None)?;
-        for _ in 0..dispatches(longest) {
-            clear(gpu, &b.progress, Some(HEADER))?;
-            time += per_pixel(self.rasterizer, file, stage, frame, &b.named())?;
-            if gpu.read::<u32>(&b.progress, 1)?[0] == 0 {
-                return Ok(time);
-            }
-        }
-        Err(GpuError::Endless {
-            adapter: gpu.name.clone(),
-            stage,
+        until_done(self.gpu(), &b.progress, (stage, dispatches(longest)), || {
+            per_pixel(self.rasterizer, file, stage, frame, &b.named())
         })
     }
 
@@ -220,11 +210,4 @@ impl Run<'_, '_> {
 pub(crate) fn dispatches(longest: u32) -> u64 {
     let passes = u64::from(longest.max(1).ilog2()) + 1;
     4 * u64::from(longest) * passes / STEPS + 1
-}
-
-/// Sets a buffer, or its beginning, to zero.
-fn clear(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: Option<u64>) -> Result<(), GpuError> {
-    let mut encoder = gpu.encoder();
-    encoder.clear_buffer(buffer, 0, bytes);
-    gpu.submit(encoder)
 }

@@ -8,13 +8,11 @@ use super::Given;
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::kernel::Fault;
+use crate::lists::HEADER;
 use crate::raster::Need;
 
 /// Bytes of a pixel's progress. Twin: `Progress` in `abuffer.wgsl`.
 pub const PROGRESS: u64 = 32;
-
-/// Bytes before the pixels' progress. Twin: `Work` in `abuffer.wgsl`.
-pub(super) const HEADER: u64 = 4;
 
 /// Pixels that a dispatch of one workgroup row can serve.
 const PIXELS_MAX: u64 = 65_535 * crate::frame::WORKGROUP as u64;

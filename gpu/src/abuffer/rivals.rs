@@ -96,18 +96,8 @@ const PIXELS_MAX: u64 = 65_535 * crate::frame::WORKGROUP as u64;
 /// buffer.
 fn bands(rasterizer: &Rasterizer<'_>, bytes: u64) -> Vec<Band> {
     let most = PIXELS_MAX.min(rasterizer.gpu.binding_limit() / bytes);
-    let mut left = vec![Band::whole(rasterizer.size)];
-    let mut bands = Vec::new();
-    while let Some(band) = left.pop() {
-        match band.halves() {
-            Some([upper, lower]) if u64::from(band.pixels(rasterizer.size)) > most => {
-                left.extend([lower, upper]);
-            }
-            // A single row that is too much is refused by the buffer's name.
-            _ => bands.push(band),
-        }
-    }
-    bands
+    // A single row that is too much is refused by the buffer's name.
+    Band::of_pixels(rasterizer.size, most)
 }
 
 fn frame(rasterizer: &Rasterizer<'_>, band: Band, [r, g, b]: [f32; 3]) -> Frame {

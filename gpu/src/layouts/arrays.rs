@@ -49,7 +49,7 @@ impl Room<'_, '_> {
                 ..listing
             };
             steps.push(Step::Other(self.pass(entry, listing, groups)?));
-            self.swap(BUFFERS);
+            self.buffers.swap(BUFFERS);
         }
         Ok(steps)
     }

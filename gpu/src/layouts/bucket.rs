@@ -17,18 +17,8 @@ use crate::raster::{MEMORY, Rasterizer, SATURATED};
 pub(super) fn bands(rasterizer: &Rasterizer<'_>) -> Vec<Band> {
     let each = memory::of_pixel(Layout::Bucket, rasterizer.samples.count()) + memory::ENTRY;
     let most = pixels_max(rasterizer).min(MEMORY / each);
-    let mut left = vec![Band::whole(rasterizer.size)];
-    let mut bands = Vec::new();
-    while let Some(band) = left.pop() {
-        match band.halves() {
-            Some([upper, lower]) if u64::from(band.pixels(rasterizer.size)) > most => {
-                left.extend([lower, upper]);
-            }
-            // A single row that is too much is refused by the buffer's name.
-            _ => bands.push(band),
-        }
-    }
-    bands
+    // A single row that is too much is refused by the buffer's name.
+    Band::of_pixels(rasterizer.size, most)
 }
 
 /// A band under way.
@@ -155,7 +145,7 @@ impl Bucket<'_, '_> {
         steps.extend(self.room.draw("bucket")?);
         self.all.build += self.room.submit(&steps)?;
         let (gpu, pixels) = (self.room.rasterizer.gpu, self.room.pixels() as usize);
-        gpu.read(self.room.get("counts"), pixels)
+        gpu.read(self.room.buffers.get("counts"), pixels)
     }
 
     /// Takes up a range that fits.
@@ -199,7 +189,7 @@ pub(super) fn make_exactly(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
     make_room(room, 1)?;
     room.submit(&room.draw("bucket")?)?;
     let gpu = room.rasterizer.gpu;
-    let counts: Vec<u32> = gpu.read(room.get("counts"), room.pixels() as usize)?;
+    let counts: Vec<u32> = gpu.read(room.buffers.get("counts"), room.pixels() as usize)?;
     let longest = counts.iter().copied().max().unwrap_or(0);
     let most = most_entries(room.rasterizer, room.pixels());
     if longest > most {
@@ -218,7 +208,7 @@ pub(super) fn make_exactly(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
 /// The arrays as they are.
 pub(super) fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
-    let counts: Vec<u32> = gpu.read(room.get("counts"), room.pixels() as usize)?;
+    let counts: Vec<u32> = gpu.read(room.buffers.get("counts"), room.pixels() as usize)?;
     stored(room, &counts)
 }
 
@@ -240,7 +230,7 @@ fn each(
     let all: Vec<Entry> = room
         .rasterizer
         .gpu
-        .read(room.get("listed"), entries * counts.len())?;
+        .read(room.buffers.get("listed"), entries * counts.len())?;
     let own = all.chunks_exact(entries).zip(counts).enumerate();
     for (pixel, (own, &count)) in own {
         take(pixel, &own[..entries.min(count as usize)]);

@@ -30,7 +30,7 @@ pub(super) fn attempt(
     let mut steps = vec![clear(&room)?];
     steps.extend(draw(&room)?);
     all.build += room.submit(&steps)?;
-    let claimed = gpu.word(room.get("counter"), 0)?;
+    let claimed = gpu.word(room.buffers.get("counter"), 0)?;
     if claimed > room.frame.capacity {
         // An invocation that finds its node unneeded keeps it: at most one node for each fragment is wasted,
         // and of those there are no more than were claimed.
@@ -68,7 +68,7 @@ pub(super) fn make(room: &mut Room<'_, '_>) -> Result<(), GpuError> {
 /// Fails by name if an invocation ran out of steps.
 pub(super) fn check_steps(room: &Room<'_, '_>) -> Result<(), GpuError> {
     let gpu = room.rasterizer.gpu;
-    match gpu.word(room.get("unfinished"), 0)? {
+    match gpu.word(room.buffers.get("unfinished"), 0)? {
         0 => Ok(()),
         _ => Err(GpuError::Limit {
             adapter: gpu.name.clone(),
@@ -103,15 +103,15 @@ pub(super) fn draw(room: &Room<'_, '_>) -> Result<Vec<Step>, GpuError> {
 pub(super) fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
     let (pixels, nodes) = (room.pixels() as usize, room.frame.capacity as usize);
-    let links: Vec<u32> = gpu.read(room.get("links"), pixels + nodes)?;
+    let links: Vec<u32> = gpu.read(room.buffers.get("links"), pixels + nodes)?;
     let entries: Vec<Entry> = match is_wide(room.rasterizer) {
         true => {
-            let both: Vec<[u32; 2]> = gpu.read(room.get("both"), nodes)?;
+            let both: Vec<[u32; 2]> = gpu.read(room.buffers.get("both"), nodes)?;
             both.into_iter().map(|[low, high]| [high, low]).collect()
         }
         false => {
-            let keys: Vec<u32> = gpu.read(room.get("keys"), nodes)?;
-            let faces: Vec<u32> = gpu.read(room.get("in_order"), nodes)?;
+            let keys: Vec<u32> = gpu.read(room.buffers.get("keys"), nodes)?;
+            let faces: Vec<u32> = gpu.read(room.buffers.get("in_order"), nodes)?;
             keys.into_iter().zip(faces).map(Entry::from).collect()
         }
     };

@@ -10,6 +10,7 @@ use super::{Built, Layout, Options, Tried};
 use crate::abuffer::{BandResult, PROGRESS, dispatches};
 use crate::error::GpuError;
 use crate::frame::Band;
+use crate::lists;
 use crate::raster::Rasterizer;
 
 /// Draws a band with room for so many nodes, twice.
@@ -64,21 +65,10 @@ pub(super) fn until_done(
     entry: &'static str,
     longest: u32,
 ) -> Result<Duration, GpuError> {
-    let gpu = room.rasterizer.gpu;
-    let mut time = Duration::ZERO;
-    room.clear("progress", None)?;
     let step = [Step::Other(room.per_pixel(entry, room.listing)?)];
-    for _ in 0..dispatches(longest) {
-        room.clear("progress", Some(4))?;
-        time += room.submit(&step)?;
-        if gpu.word(room.get("progress"), 0)? == 0 {
-            return Ok(time);
-        }
-    }
-    Err(GpuError::Endless {
-        adapter: gpu.name.clone(),
-        stage: "packed",
-    })
+    let most = ("packed", dispatches(longest));
+    let progress = room.buffers.get("progress");
+    lists::until_done(room.rasterizer.gpu, progress, most, || room.submit(&step))
 }
 
 /// The nodes as they are, with addresses for links. A colour that a triangle's may be rounded to stands
@@ -86,10 +76,10 @@ pub(super) fn until_done(
 pub(super) fn lists(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
     let (pixels, capacity) = (room.pixels(), room.frame.capacity);
-    let attempts = gpu.word(room.get("counter"), 0)?;
+    let attempts = gpu.word(room.buffers.get("counter"), 0)?;
     let stored = attempts.min(capacity) as usize;
-    let heads: Vec<u32> = gpu.read(room.get("heads"), pixels as usize)?;
-    let nodes: Vec<[u32; 4]> = gpu.read(room.get("packed_nodes"), stored)?;
+    let heads: Vec<u32> = gpu.read(room.buffers.get("heads"), pixels as usize)?;
+    let nodes: Vec<[u32; 4]> = gpu.read(room.buffers.get("packed_nodes"), stored)?;
     let mut lists = Lists {
         heads: heads.into_iter().map(|head| head.wrapping_sub(1)).collect(),
         attempts,

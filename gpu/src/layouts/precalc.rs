@@ -25,7 +25,7 @@ pub(super) fn attempt(
     make(&mut room)?;
     let mut all = Built::default();
     all.build += room.submit(&count(&room)?)?;
-    let offsets: Vec<u32> = gpu.read(room.get("offsets"), pixels as usize + 1)?;
+    let offsets: Vec<u32> = gpu.read(room.buffers.get("offsets"), pixels as usize + 1)?;
     let counted = offsets.last().copied().unwrap_or(0);
     if counted > capacity {
         return Ok(Tried::Needs(counted, None));
@@ -85,7 +85,7 @@ pub(super) fn linked(
     counted: u32,
 ) -> Result<triptych_spec::abuffer::Lists, GpuError> {
     let gpu = room.rasterizer.gpu;
-    let entries: Vec<Entry> = gpu.read(room.get("listed"), counted as usize)?;
+    let entries: Vec<Entry> = gpu.read(room.buffers.get("listed"), counted as usize)?;
     let mut linked = Linked::new(room.pixels(), &room.rasterizer.colours);
     let mut left = entries.len();
     for (pixel, run) in offsets.windows(2).enumerate() {

@@ -9,6 +9,7 @@ use super::{Built, Layout, Options, REGIONS, Tried};
 use crate::abuffer::{BandResult, PROGRESS, dispatches};
 use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
+use crate::lists;
 use crate::raster::Rasterizer;
 
 /// Draws a band with room for so many nodes in all regions.
@@ -55,7 +56,7 @@ pub(super) fn make(room: &mut Room<'_, '_>) -> Result<(), GpuError> {
     let nodes = u64::from(REGIONS) * u64::from(room.frame.capacity);
     room.listing.regions = REGIONS;
     room.zeros("counters", REGIONS.into())?;
-    room.set("heads", gpu.filled("heads", pixels, EOL)?);
+    room.buffers.set("heads", gpu.filled("heads", pixels, EOL)?);
     room.zeros("nodes", 4 * nodes)?;
     room.zeros("colours", 4 * nodes)?;
     room.zeros("progress", 1 + PROGRESS / 4 * u64::from(pixels))
@@ -65,7 +66,7 @@ impl Room<'_, '_> {
     /// How often an address was asked for in each region.
     fn counters(&self) -> Result<Vec<u32>, GpuError> {
         let gpu = self.rasterizer.gpu;
-        gpu.read(self.get("counters"), REGIONS as usize)
+        gpu.read(self.buffers.get("counters"), REGIONS as usize)
     }
 }
 
@@ -75,23 +76,11 @@ fn until_done(
     entry: &'static str,
     longest: u32,
 ) -> Result<Duration, GpuError> {
-    let gpu = room.rasterizer.gpu;
-    let mut time = Duration::ZERO;
-    room.clear("progress", None)?;
     let groups = room.pixels().div_ceil(WORKGROUP);
-    let pass = room.pass_of("abuffer", entry, room.listing, groups)?;
-    let step = [Step::Other(pass)];
-    for _ in 0..dispatches(longest) {
-        room.clear("progress", Some(4))?;
-        time += room.submit(&step)?;
-        if gpu.word(room.get("progress"), 0)? == 0 {
-            return Ok(time);
-        }
-    }
-    Err(GpuError::Endless {
-        adapter: gpu.name.clone(),
-        stage: entry,
-    })
+    let step = [Step::Other(room.pass_of("abuffer", entry, room.listing, groups)?)];
+    let most = (entry, dispatches(longest));
+    let progress = room.buffers.get("progress");
+    lists::until_done(room.rasterizer.gpu, progress, most, || room.submit(&step))
 }
 
 /// The nodes of all regions, one region after another without gaps, with links to match. What leads to a
@@ -100,9 +89,9 @@ pub(super) fn lists(room: &Room<'_, '_>, attempts: &[u32]) -> Result<Lists, GpuE
     let gpu = room.rasterizer.gpu;
     let capacity = room.frame.capacity as usize;
     let all = REGIONS as usize * capacity;
-    let nodes: Vec<[u32; 4]> = gpu.read(room.get("nodes"), all)?;
-    let colours: Vec<[f32; 4]> = gpu.read(room.get("colours"), all)?;
-    let heads: Vec<u32> = gpu.read(room.get("heads"), room.pixels() as usize)?;
+    let nodes: Vec<[u32; 4]> = gpu.read(room.buffers.get("nodes"), all)?;
+    let colours: Vec<[f32; 4]> = gpu.read(room.buffers.get("colours"), all)?;
+    let heads: Vec<u32> = gpu.read(room.buffers.get("heads"), room.pixels() as usize)?;
     let stored: Vec<usize> = attempts.iter().map(|n| capacity.min(*n as usize)).collect();
     let before: Vec<usize> = stored
         .iter()

@@ -9,6 +9,7 @@ use crate::abuffer::rivals::image;
 use crate::dispatch;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
+use crate::named::Named;
 use crate::raster::{self, Rasterizer, Work};
 use crate::timer::Writes;
 
@@ -53,7 +54,7 @@ pub(super) struct Room<'r, 'g> {
     /// The transparent triangles.
     work: Work,
     /// All buffers by the names of variables.
-    buffers: Vec<(&'static str, wgpu::Buffer)>,
+    pub(super) buffers: Named,
 }
 
 impl<'r, 'g> Room<'r, 'g> {
@@ -100,7 +101,7 @@ impl<'r, 'g> Room<'r, 'g> {
                 ..Listing::default()
             },
             work: rasterizer.work(band, |prim| !is_opaque(prim))?,
-            buffers,
+            buffers: buffers.into(),
         })
     }
 
@@ -113,49 +114,17 @@ impl<'r, 'g> Room<'r, 'g> {
         self.frame.samples == 1
     }
 
-    /// Puts a buffer in place of another of its name, or adds it.
-    pub(super) fn set(&mut self, name: &'static str, buffer: wgpu::Buffer) {
-        self.buffers.retain(|(other, _)| *other != name);
-        self.buffers.push((name, buffer));
-    }
-
-    /// The same of so many words of zeros.
+    /// Makes a buffer of so many words of zeros.
     pub(super) fn zeros(&mut self, name: &'static str, words: u64) -> Result<(), GpuError> {
         let buffer = self.rasterizer.gpu.storage(name, 4 * words)?;
-        self.set(name, buffer);
+        self.buffers.set(name, buffer);
         Ok(())
-    }
-
-    pub(super) fn get(&self, name: &str) -> &wgpu::Buffer {
-        let found = self.buffers.iter().find(|(other, _)| *other == name);
-        &found.expect("a buffer that was made before").1
-    }
-
-    /// Exchanges two buffers.
-    pub(super) fn swap(&mut self, [a, b]: [&'static str; 2]) {
-        for (name, _) in &mut self.buffers {
-            *name = match *name {
-                name if name == a => b,
-                name if name == b => a,
-                other => other,
-            };
-        }
-    }
-
-    /// Bytes of all buffers, but for the triangles.
-    pub(super) fn bytes(&self) -> u64 {
-        self.buffers.iter().map(|(_, buffer)| buffer.size()).sum()
-    }
-
-    fn named(&self) -> Vec<(&str, &wgpu::Buffer)> {
-        let named = self.buffers.iter().map(|(name, buffer)| (*name, buffer));
-        named.collect()
     }
 
     /// A stage over the transparent triangles.
     pub(super) fn draw(&self, stage: &str) -> Result<Vec<Step>, GpuError> {
         let listing = self.rasterizer.gpu.uniform("listing", &self.listing)?;
-        let mut named = self.named();
+        let mut named: Vec<_> = self.buffers.iter().collect();
         named.push(("listing", &listing));
         let file = self.layout.file();
         let passes = self
@@ -185,7 +154,7 @@ impl<'r, 'g> Room<'r, 'g> {
         let Rasterizer { gpu, kernels, .. } = *self.rasterizer;
         let frame = gpu.uniform("frame", &self.frame)?;
         let listing = gpu.uniform("listing", &listing)?;
-        let mut named = self.named();
+        let mut named: Vec<_> = self.buffers.iter().collect();
         named.extend([
             ("frame", &frame),
             ("listing", &listing),
@@ -219,14 +188,14 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Sets a buffer, or its beginning, to zero.
     pub(super) fn clear(&self, name: &str, bytes: Option<u64>) -> Result<(), GpuError> {
         let mut encoder = self.rasterizer.gpu.encoder();
-        encoder.clear_buffer(self.get(name), 0, bytes);
+        encoder.clear_buffer(self.buffers.get(name), 0, bytes);
         self.rasterizer.gpu.submit(encoder)
     }
 
     /// The picture; empty where pixels have several samples.
     pub(super) fn picture(&self) -> Result<Vec<[f32; 3]>, GpuError> {
         match self.is_shown() {
-            true => image(self.rasterizer.gpu, self.get("picture"), self.pixels()),
+            true => image(self.rasterizer.gpu, self.buffers.get("picture"), self.pixels()),
             false => Ok(Vec::new()),
         }
     }

@@ -155,7 +155,7 @@ impl<'r, 'g> Timed<'r, 'g> {
 
     /// Bytes of all buffers, but for the triangles.
     pub fn bytes(&self) -> u64 {
-        self.room.bytes()
+        self.room.buffers.bytes()
     }
 
     fn run(&self, span: usize) -> Result<(), GpuError> {
@@ -201,7 +201,7 @@ fn make(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
         Layout::Precalc => {
             precalc::make(room)?;
             room.submit(&precalc::count(room)?)?;
-            let counted = gpu.word(room.get("offsets"), room.pixels())?;
+            let counted = gpu.word(room.buffers.get("offsets"), room.pixels())?;
             room.frame.capacity = counted;
             room.zeros("listed", 2 * u64::from(counted))?;
             room.clear("counts", None)?;
@@ -210,14 +210,14 @@ fn make(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
         Layout::Packed => {
             packed::make(room)?;
             room.submit(&room.draw("packed")?)?;
-            room.frame.capacity = gpu.word(room.get("counter"), 0)?;
+            room.frame.capacity = gpu.word(room.buffers.get("counter"), 0)?;
             packed::make(room)?;
             Ok(room.frame.capacity)
         }
         Layout::Regions => {
             regions::make(room)?;
             room.submit(&room.draw("regions")?)?;
-            let attempts: Vec<u32> = gpu.read(room.get("counters"), REGIONS as usize)?;
+            let attempts: Vec<u32> = gpu.read(room.buffers.get("counters"), REGIONS as usize)?;
             room.frame.capacity = attempts.iter().copied().max().unwrap_or(0);
             regions::make(room)?;
             let all: u64 = attempts.iter().map(|n| u64::from(*n)).sum();
@@ -228,7 +228,7 @@ fn make(room: &mut Room<'_, '_>) -> Result<u32, GpuError> {
             room.submit(&[ordered::clear(room)?])?;
             room.submit(&ordered::draw(room)?)?;
             // Without any room each fragment asks once; with room, twice at most.
-            let fragments = gpu.word(room.get("counter"), 0)?;
+            let fragments = gpu.word(room.buffers.get("counter"), 0)?;
             room.frame.capacity = fragments.saturating_mul(2);
             ordered::make(room)?;
             Ok(fragments)
@@ -242,12 +242,12 @@ fn read(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     match room.layout {
         Layout::Bucket => bucket::lists(room),
         Layout::Precalc => {
-            let offsets: Vec<u32> = gpu.read(room.get("offsets"), room.pixels() as usize + 1)?;
+            let offsets: Vec<u32> = gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
             precalc::linked(room, &offsets, room.frame.capacity)
         }
         Layout::Packed => packed::lists(room),
         Layout::Regions => {
-            let attempts: Vec<u32> = gpu.read(room.get("counters"), REGIONS as usize)?;
+            let attempts: Vec<u32> = gpu.read(room.buffers.get("counters"), REGIONS as usize)?;
             regions::lists(room, &attempts)
         }
         Layout::Ordered => {

@@ -13,7 +13,7 @@ use crate::abuffer::rivals::{Surfaces, image};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
-use crate::raster::{Rasterizer, SATURATED};
+use crate::raster::{Attempts, Need, Rasterizer, SATURATED};
 
 /// Triangles in bins beyond which a band is split: a triangle has 64 fragments in a tile at most, and
 /// sums of fragments are to stay below [`SATURATED`].
@@ -25,6 +25,25 @@ pub(super) enum Tried<T = Drawn> {
     Done(Box<T>),
     /// There is not enough room: so many fragments are to be stored.
     Needs(u32),
+}
+
+/// Draws a whole target in bands of rows, each with as much room as it turns out to need.
+pub(super) fn in_bands<T>(
+    rasterizer: &Rasterizer<'_>,
+    need: Need,
+    capacity: Option<u32>,
+    draw: impl Fn(Band, u32) -> Result<Tried<T>, GpuError>,
+    mut add: impl FnMut(T),
+) -> Result<(), GpuError> {
+    let mut attempts = Attempts::new(rasterizer.gpu, rasterizer.size, need, capacity);
+    while let Some((band, capacity)) = attempts.next() {
+        match draw(band, capacity) {
+            Ok(Tried::Done(part)) => add(*part),
+            Ok(Tried::Needs(fragments)) => attempts.overflowed(band, fragments)?,
+            Err(error) => attempts.failed(band, capacity, error)?,
+        }
+    }
+    Ok(())
 }
 
 /// Draws a band with room for so many fragments.
@@ -39,7 +58,7 @@ pub(super) fn run(
         return Ok(Tried::Needs(SATURATED));
     };
     let binned = bins.last().copied().unwrap_or(0);
-    let prims = rasterizer.gpu.read(room.get("binned"), binned as usize)?;
+    let prims = rasterizer.gpu.read(room.buffers.get("binned"), binned as usize)?;
     let drawn = (longest(&bins), options.drawn.clamp(1, DRAWN));
     let mut tried = jagged(&mut room, band, capacity, drawn)?;
     if let Tried::Done(drawn) = &mut tried {
@@ -76,7 +95,7 @@ pub(super) fn room<'r, 'g>(
     let mut room = Room::new(rasterizer, band, frame)?;
     let surfaces = Surfaces::upload(rasterizer, options.opaque, band)?;
     for (name, buffer) in surfaces.named() {
-        room.set(name, buffer.clone());
+        room.buffers.set(name, buffer.clone());
     }
     Ok(room)
 }
@@ -85,7 +104,7 @@ pub(super) fn room<'r, 'g>(
 pub(super) fn count_bins(room: &Room<'_, '_>) -> Result<(Vec<u32>, Duration), GpuError> {
     let time = submit(room, &room.count_bins()?)?;
     let gpu = room.rasterizer.gpu;
-    let offsets = gpu.read(room.get("bins"), room.tiles as usize + 1)?;
+    let offsets = gpu.read(room.buffers.get("bins"), room.tiles as usize + 1)?;
     Ok((offsets, time))
 }
 
@@ -93,7 +112,7 @@ pub(super) fn count_bins(room: &Room<'_, '_>) -> Result<(Vec<u32>, Duration), Gp
 pub(super) fn fill_bins(room: &mut Room<'_, '_>, binned: u32) -> Result<Duration, GpuError> {
     let bytes = 4 * u64::from(binned);
     let bins = room.rasterizer.gpu.storage("triangles in tiles", bytes)?;
-    room.set("binned", bins);
+    room.buffers.set("binned", bins);
     submit(room, &room.fill_bins(binned)?)
 }
 
@@ -108,21 +127,21 @@ pub(super) fn jagged(
     let gpu = rasterizer.gpu;
     let mut times = Times::default();
     times.jagged += submit(room, &room.place_lists(drawn)?)?;
-    let needed = gpu.word(room.get("counter"), 0)?;
+    let needed = gpu.word(room.buffers.get("counter"), 0)?;
     if needed > capacity {
         return Ok(Tried::Needs(needed));
     }
     let entries = || gpu.storage("entries of lists", 8 * u64::from(needed));
-    room.set("listed", entries()?);
+    room.buffers.set("listed", entries()?);
     if room.longest(needed)?.length > ROWS {
-        room.set("merged", entries()?);
+        room.buffers.set("merged", entries()?);
     }
     times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
     let longest = room.longest(needed)?;
-    let lists: Vec<rows::List> = gpu.read(room.get("lists"), room.lists as usize)?;
-    let moved: Vec<u32> = gpu.read(room.get("rows"), room.lists as usize)?;
+    let lists: Vec<rows::List> = gpu.read(room.buffers.get("lists"), room.lists as usize)?;
+    let moved: Vec<u32> = gpu.read(room.buffers.get("rows"), room.lists as usize)?;
     let linked = |room: &Room<'_, '_>| -> Result<Lists, GpuError> {
-        let entries: Vec<[u32; 2]> = gpu.read(room.get("listed"), needed as usize)?;
+        let entries: Vec<[u32; 2]> = gpu.read(room.buffers.get("listed"), needed as usize)?;
         let size = (rasterizer.size.width, band);
         Ok(rows::of_rows(
             size,
@@ -156,7 +175,7 @@ pub(super) fn longest(offsets: &[u32]) -> u32 {
 
 pub(super) fn picture(room: &Room<'_, '_>) -> Result<Vec<[f32; 3]>, GpuError> {
     let pixels = room.frame.width * room.frame.rows;
-    image(room.rasterizer.gpu, room.get("picture"), pixels)
+    image(room.rasterizer.gpu, room.buffers.get("picture"), pixels)
 }
 
 pub(super) fn submit(room: &Room<'_, '_>, passes: &[Ready]) -> Result<Duration, GpuError> {

@@ -14,7 +14,8 @@ use crate::abuffer::{BandResult, PROGRESS, dispatches};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
-use crate::raster::{Attempts, Need, Rasterizer, SATURATED};
+use crate::lists::until_done;
+use crate::raster::{Need, Rasterizer, SATURATED};
 
 /// Of a pixel: opaque surface, picture, head, progress of sort and blend. Of a fragment: a node.
 const NEED: Need = Need {
@@ -67,14 +68,9 @@ pub fn run(
     inspect: impl Fn(&Lists) -> Option<u32>,
 ) -> Result<Linked, GpuError> {
     let mut result = Linked::default();
-    let mut attempts = Attempts::new(rasterizer.gpu, rasterizer.size, NEED, options.capacity);
-    while let Some((band, capacity)) = attempts.next() {
-        match of_band(rasterizer, &options, (band, capacity), &inspect) {
-            Ok(Tried::Done(part)) => result.add(*part),
-            Ok(Tried::Needs(fragments)) => attempts.overflowed(band, fragments)?,
-            Err(error) => attempts.failed(band, capacity, error)?,
-        }
-    }
+    let draw = |band, capacity| of_band(rasterizer, &options, (band, capacity), &inspect);
+    let add = |part| result.add(part);
+    attempt::in_bands(rasterizer, NEED, options.capacity, draw, add)?;
     Ok(result)
 }
 
@@ -120,7 +116,7 @@ fn of_band(
     loop {
         room.with_nodes(&regions)?;
         time += attempt::submit(&room, &room.drawn("linked", 0, drawn)?)?;
-        let counted: Vec<Region> = rasterizer.gpu.read(room.get("regions"), regions.len())?;
+        let counted: Vec<Region> = rasterizer.gpu.read(room.buffers.get("regions"), regions.len())?;
         let needed: u64 = counted.iter().map(|r| u64::from(r.attempts)).sum();
         let full = |(seen, region): (&Region, &Region)| seen.attempts > region.capacity;
         if !counted.iter().zip(&regions).any(full) {
@@ -151,7 +147,9 @@ fn of_band(
         built,
     };
     if let Some(longest) = inspect(&result.built) {
-        time += until_done(&room, room.sort_linked()?, dispatches(longest))?;
+        let (sort, most) = ([room.sort_linked()?], ("linked", dispatches(longest)));
+        let progress = room.buffers.get("progress");
+        time += until_done(rasterizer.gpu, progress, most, || attempt::submit(&room, &sort))?;
         result.sorted = Some(nodes::lists(&room, band, &regions)?);
         for pass in room.blend_linked(longest, u32::MAX)? {
             time += attempt::submit(&room, &[pass])?;
@@ -181,7 +179,7 @@ impl Room<'_, '_> {
         for _ in 0..2 {
             self.with_nodes(&regions)?;
             attempt::submit(self, &self.drawn("linked", 0, drawn)?)?;
-            let counted: Vec<Region> = gpu.read(self.get("regions"), regions.len())?;
+            let counted: Vec<Region> = gpu.read(self.buffers.get("regions"), regions.len())?;
             regions = placed(counted.iter().map(|r| r.attempts));
             regions.iter_mut().zip(&counted).for_each(|(region, seen)| {
                 region.attempts = seen.attempts;
@@ -197,10 +195,10 @@ impl Room<'_, '_> {
         let gpu = self.rasterizer.gpu;
         let pixels = u64::from(self.frame.width) * u64::from(self.frame.rows);
         let nodes = regions.last().map_or(0, |last| last.first + last.capacity);
-        self.set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
-        self.set("heads", gpu.storage("heads", 4 * pixels)?);
-        self.set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
-        self.set("regions", gpu.upload("regions", regions)?);
+        self.buffers.set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
+        self.buffers.set("heads", gpu.storage("heads", 4 * pixels)?);
+        self.buffers.set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
+        self.buffers.set("regions", gpu.upload("regions", regions)?);
         Ok(())
     }
 
@@ -213,7 +211,7 @@ impl Room<'_, '_> {
     pub(super) fn sort_linked_whole(&self, longest: u32) -> Result<Vec<Ready>, GpuError> {
         let first = self
             .sort_linked()?
-            .after_clearing(self.get("progress").clone());
+            .after_clearing(self.buffers.get("progress").clone());
         let others = (1..dispatches(longest)).map(|_| self.sort_linked());
         std::iter::once(Ok(first)).chain(others).collect()
     }
@@ -232,29 +230,4 @@ impl Room<'_, '_> {
         // A list ends behind its last node.
         (0..=longest).step_by(STEPS as usize).map(pass).collect()
     }
-}
-
-/// Runs a pass until no pixel asks for more.
-fn until_done(room: &Room<'_, '_>, pass: Ready, most: u64) -> Result<Duration, GpuError> {
-    let gpu = room.rasterizer.gpu;
-    let progress = room.get("progress");
-    let clear = |bytes| {
-        let mut encoder = gpu.encoder();
-        encoder.clear_buffer(progress, 0, bytes);
-        gpu.submit(encoder)
-    };
-    let pass = [pass];
-    let mut time = Duration::ZERO;
-    clear(None)?;
-    for _ in 0..most {
-        clear(Some(4))?;
-        time += attempt::submit(room, &pass)?;
-        if gpu.word(progress, 0)? == 0 {
-            return Ok(time);
-        }
-    }
-    Err(GpuError::Endless {
-        adapter: gpu.name.clone(),
-        stage: "linked",
-    })
 }

@@ -27,8 +27,8 @@ impl Room<'_, '_> {
     pub(super) fn place_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
         let mut passes = self.drawn("jagged_count", 0, bins)?;
         let place = self.pass("jagged_place", self.of_tiles(), self.tiles)?;
-        let place = place.after_clearing(self.get("counter").clone());
-        passes.push(place.after_clearing(self.get("longest").clone()));
+        let place = place.after_clearing(self.buffers.get("counter").clone());
+        passes.push(place.after_clearing(self.buffers.get("longest").clone()));
         Ok(passes)
     }
 
@@ -69,7 +69,7 @@ impl Room<'_, '_> {
                 ..Tiled::default()
             };
             passes.push(self.pass(entry, tiled, all)?);
-            self.swap();
+            self.buffers.swap(["listed", "merged"]);
         }
         Ok(passes)
     }

@@ -12,7 +12,7 @@ use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::lists::LONG;
-use crate::raster::{Attempts, Rasterizer, SATURATED};
+use crate::raster::{Rasterizer, SATURATED};
 
 /// What came out of all bands.
 #[derive(Clone, Debug, Default)]
@@ -36,19 +36,9 @@ pub const FINISHED: u32 = 0x8000_0000;
 /// Limits by name, WGSL errors, and whatever the device reports.
 pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Local, GpuError> {
     let mut result = Local::default();
-    let mut attempts = Attempts::new(
-        rasterizer.gpu,
-        rasterizer.size,
-        room::NEED,
-        options.capacity,
-    );
-    while let Some((band, capacity)) = attempts.next() {
-        match of_band(rasterizer, &options, band, capacity) {
-            Ok(Tried::Done(part)) => result.add(*part),
-            Ok(Tried::Needs(fragments)) => attempts.overflowed(band, fragments)?,
-            Err(error) => attempts.failed(band, capacity, error)?,
-        }
-    }
+    let draw = |band, capacity| of_band(rasterizer, &options, band, capacity);
+    let add = |part| result.add(part);
+    attempt::in_bands(rasterizer, room::NEED, options.capacity, draw, add)?;
     Ok(result)
 }
 
@@ -72,14 +62,14 @@ impl Room<'_, '_> {
             ..self.of_tiles()
         };
         let pass = self.pass("local", tiled, self.tiles)?;
-        Ok(pass.after_clearing(self.get("digests").clone()))
+        Ok(pass.after_clearing(self.buffers.get("digests").clone()))
     }
 
     /// Makes room for digests.
     pub(super) fn with_digests(&mut self) -> Result<(), GpuError> {
         let bytes = 4 + 8 * u64::from(self.frame.width) * u64::from(self.frame.rows);
         let digests = self.rasterizer.gpu.storage("digests", bytes)?;
-        self.set("digests", digests);
+        self.buffers.set("digests", digests);
         Ok(())
     }
 }
@@ -99,7 +89,7 @@ fn of_band(
     let drawn = options.drawn.clamp(1, DRAWN);
     time += attempt::submit(&room, &[room.local(drawn, u32::MAX)?])?;
     let pixels = band.pixels(rasterizer.size) as usize;
-    let words: Vec<u32> = gpu.read(room.get("digests"), 1 + 2 * pixels)?;
+    let words: Vec<u32> = gpu.read(room.buffers.get("digests"), 1 + 2 * pixels)?;
     let left = words[0];
     let of_pixel = |d: &[u32]| Digest {
         count: d[0],
@@ -113,7 +103,7 @@ fn of_band(
             Tried::Done(lists) => lists,
         };
         time += lists.times.jagged + lists.times.shade;
-        let marked: Vec<u32> = gpu.read(room.get("bins"), room.tiles as usize)?;
+        let marked: Vec<u32> = gpu.read(room.buffers.get("bins"), room.tiles as usize)?;
         let sorted = lists.bands.first().and_then(|band| band.sorted.as_ref());
         for (pixel, own) in digests.iter_mut().enumerate() {
             if marked[tile_of(pixel, rasterizer.size.width, band)] & FINISHED == 0 {

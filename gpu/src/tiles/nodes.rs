@@ -17,9 +17,9 @@ pub(super) fn lists(
     let rasterizer = room.rasterizer;
     let gpu = rasterizer.gpu;
     let all = regions.last().map_or(0, |last| last.first + last.capacity);
-    let nodes: Vec<[u32; 4]> = gpu.read(room.get("nodes"), all as usize)?;
+    let nodes: Vec<[u32; 4]> = gpu.read(room.buffers.get("nodes"), all as usize)?;
     let pixels = band.pixels(rasterizer.size) as usize;
-    let heads: Vec<u32> = gpu.read(room.get("heads"), pixels)?;
+    let heads: Vec<u32> = gpu.read(room.buffers.get("heads"), pixels)?;
     // By address, the node's number among those that are stored.
     let mut numbers = vec![None; nodes.len()];
     let mut count = 0;

@@ -7,6 +7,7 @@ use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::lists::TILE;
+use crate::named::Named;
 use crate::raster::{Need, Rasterizer};
 
 /// Bytes of a list. Twin: `List` in `jagged.wgsl`.
@@ -48,7 +49,7 @@ pub(super) struct Room<'r, 'g> {
     /// Lists of the band.
     pub(super) lists: u32,
     /// All buffers by the names of variables.
-    buffers: Vec<(&'static str, wgpu::Buffer)>,
+    pub(super) buffers: Named,
     /// Triangles of each tile, while they are counted.
     in_tiles: wgpu::Buffer,
 }
@@ -86,49 +87,25 @@ impl<'r, 'g> Room<'r, 'g> {
             frame,
             tiles,
             lists,
-            buffers,
+            buffers: buffers.into(),
         })
-    }
-
-    /// Puts a buffer in place of another of its name, or adds it.
-    pub(super) fn set(&mut self, name: &'static str, buffer: wgpu::Buffer) {
-        self.buffers.retain(|(other, _)| *other != name);
-        self.buffers.push((name, buffer));
-    }
-
-    /// A buffer by its name.
-    pub(super) fn get(&self, name: &str) -> &wgpu::Buffer {
-        let found = self.buffers.iter().find(|(other, _)| *other == name);
-        &found.expect("a buffer that was made before").1
     }
 
     /// Bytes of all buffers.
     pub(super) fn bytes(&self) -> u64 {
-        let own = self.buffers.iter().map(|(_, buffer)| buffer.size());
-        own.sum::<u64>() + self.in_tiles.size()
+        self.buffers.bytes() + self.in_tiles.size()
     }
 
     /// What the kernels found out of the lists, which hold so many entries. A kernel of a user's may
     /// have written anything.
     pub(super) fn longest(&self, entries: u32) -> Result<Longest, GpuError> {
         let gpu = self.rasterizer.gpu;
-        let words: Vec<Longest> = gpu.read(self.get("longest"), 1)?;
+        let words: Vec<Longest> = gpu.read(self.buffers.get("longest"), 1)?;
         Ok(Longest {
             length: words[0].length.min(entries),
             kernels: words[0].kernels,
             count: words[0].count.min(self.lists),
         })
-    }
-
-    /// Exchanges the entries with those that the last pass left in order.
-    pub(super) fn swap(&mut self) {
-        for (name, _) in &mut self.buffers {
-            *name = match *name {
-                "listed" => "merged",
-                "merged" => "listed",
-                other => other,
-            };
-        }
     }
 
     pub(super) fn pass(&self, entry: &str, tiled: Tiled, groups: u32) -> Result<Ready, GpuError> {
@@ -153,7 +130,7 @@ impl<'r, 'g> Room<'r, 'g> {
             ("corners", self.rasterizer.corners()),
             ("faces", &self.rasterizer.faces),
         ]);
-        all.extend(self.buffers.iter().map(|(name, buffer)| (*name, buffer)));
+        all.extend(self.buffers.iter());
         let file = match entry {
             "local" => "local",
             "linked" | "linked_sort" | "linked_blend" => "linked",
@@ -165,11 +142,11 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Counts the triangles of each tile, and where its bin begins.
     pub(super) fn count_bins(&self) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(0);
-        let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
+        let others = [("counts", &self.in_tiles), ("offsets", self.buffers.get("bins"))];
         let small = self.pass_with("bin_count", tiled, tiled.items.div_ceil(WORKGROUP), &others)?;
         let small = small.after_clearing(self.in_tiles.clone());
         let mut passes = vec![
-            small.after_clearing(self.get("larges").clone()),
+            small.after_clearing(self.buffers.get("larges").clone()),
             self.pass_with("bin_count_large", tiled, tiled.groups, &others)?,
         ];
         passes.extend(self.offsets(self.tiles, &others)?);
@@ -179,7 +156,7 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Fills the bins, which have room for so many triangles, and puts them in order.
     pub(super) fn fill_bins(&self, binned: u32) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(binned);
-        let others = [("counts", &self.in_tiles), ("offsets", self.get("bins"))];
+        let others = [("counts", &self.in_tiles), ("offsets", self.buffers.get("bins"))];
         Ok(vec![
             self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
             self.pass_with("bin_fill_large", tiled, tiled.groups, &others)?,

@@ -74,7 +74,7 @@ impl<'r, 'g> Timed<'r, 'g> {
         if let Some((_, passes)) = locals.first() {
             attempt::submit(&timed.room, passes)?;
         }
-        timed.left = rasterizer.gpu.word(timed.room.get("digests"), 0)?;
+        timed.left = rasterizer.gpu.word(timed.room.buffers.get("digests"), 0)?;
         if timed.left == 0 {
             timed.spans.extend(locals);
             return Ok(timed);
@@ -159,11 +159,11 @@ impl<'r, 'g> Timed<'r, 'g> {
         let gpu = room.rasterizer.gpu;
         let place = room.place_lists(drawn)?;
         attempt::submit(room, &place)?;
-        let fragments = gpu.word(room.get("counter"), 0)?;
+        let fragments = gpu.word(room.buffers.get("counter"), 0)?;
         let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
-        room.set("listed", entries()?);
+        room.buffers.set("listed", entries()?);
         if room.longest(fragments)?.length > ROWS {
-            room.set("merged", entries()?);
+            room.buffers.set("merged", entries()?);
         }
         let fill = room.drawn("jagged_fill", fragments, drawn)?;
         attempt::submit(room, &fill)?;
