@@ -12,7 +12,8 @@ struct Larges {
 
 @group(0) @binding(16) var<storage, read_write> larges: Larges;
 
-// Tiles of which columns and rows hold a sample within a triangle's box, and how many they are.
+// Tiles of which columns and rows hold a pixel whose samples span something of a triangle's box, and how
+// many they are.
 struct Box {
     first: vec2<u32>,
     across: u32,
@@ -20,14 +21,14 @@ struct Box {
 }
 
 fn box_of(s: Setup) -> Box {
-    let half = i32(1u << (frame.bits - 1u));
-    let low = min(s.a.xy, min(s.b.xy, s.c.xy));
-    let high = max(s.a.xy, max(s.b.xy, s.c.xy));
+    let inner = places();
+    let low = min(s.a.xy, min(s.b.xy, s.c.xy)) - reference() - inner.high;
+    let high = max(s.a.xy, max(s.b.xy, s.c.xy)) - reference() - inner.low;
     let top = vec2(0, i32(frame.first_row));
     let end = vec2(i32(frame.width), i32(frame.first_row + frame.rows));
-    // The first sample at or after `low`, and the last up to `high`: shifts round down.
-    let first = max((low + (half - 1)) >> vec2(frame.bits), top);
-    let last = min((high - half) >> vec2(frame.bits), end - 1);
+    // The first pixel at or after `low`, and the last up to `high`: shifts round down.
+    let first = max(-((-low) >> vec2(frame.bits)), top);
+    let last = min(high >> vec2(frame.bits), end - 1);
     if s.empty || any(first > last) {
         return Box(vec2(0u), 0u, 0u);
     }
@@ -113,7 +114,7 @@ fn sort_bin(tile: u32, lane: u32) {
     if length < 2u || length > LONG {
         return;
     }
-    let middle = first_sample(tile) + ((i32(SIDE) / 2) << frame.bits);
+    let middle = first_place(tile) + ((i32(SIDE) / 2) << frame.bits);
     for (var i = lane; i < length; i += WORKGROUP) {
         let prim = binned[bin.x + i];
         own_values[i] = vec2(bitcast<u32>(key_about(prepare(prim), middle)), prim);

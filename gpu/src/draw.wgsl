@@ -8,6 +8,12 @@
 //   leave_pixel   after all of a batch.
 //#import tile
 
+// The samples at which a fragment shows, none where there is no fragment; and its key.
+struct Covered {
+    mask: u32,
+    key: u32,
+}
+
 // No opaque surface: farther than every key.
 const NOTHING: u32 = 0xffffffffu;
 
@@ -23,7 +29,8 @@ var<workgroup> batch: vec2<u32>;
 // Triangles that leave a fragment at all pixels.
 var<workgroup> everywhere: atomic<u32>;
 
-// Of each pixel of a tile, the key from which on fragments are not kept; the least and the largest.
+// Of each pixel of a tile, the key from which on fragments are not kept at any sample; the least of those
+// of all samples, and the largest.
 var<workgroup> ends: array<u32, WORKGROUP>;
 var<workgroup> first_end: atomic<u32>;
 var<workgroup> last_end: atomic<u32>;
@@ -35,7 +42,7 @@ var<workgroup> bin_bounds: vec2<u32>;
 struct Pixel {
     tile: u32,
     lane: u32,
-    // The key from which on fragments are not kept.
+    // The key from which on fragments are not kept at any sample.
     end: u32,
     // Fragments so far.
     count: u32,
@@ -96,20 +103,21 @@ fn pixel_in(tile: u32, lane: u32, fill: bool) -> Pixel {
     own.tile = tile;
     own.lane = lane;
     if pixel != NOWHERE {
-        own.end = end_at(pixel);
-        atomicMin(&first_end, own.end);
-        atomicMax(&last_end, own.end);
+        let ends = kept_up_to(pixel);
+        own.end = ends.y;
+        atomicMin(&first_end, ends.x);
+        atomicMax(&last_end, ends.y);
     }
     ends[lane] = own.end;
     start_pixel(&own, fill);
     return own;
 }
 
-fn end_at(pixel: u32) -> u32 {
+fn kept_up_to(pixel: u32) -> vec2<u32> {
     if frame.depth_test == 0u {
-        return NOTHING;
+        return vec2(NOTHING);
     }
-    return opaque_key[pixel];
+    return ends_at(pixel);
 }
 
 // The smaller triangles of a batch; which of it are larger, a bit each.
@@ -125,45 +133,40 @@ fn draw_small(first: u32, bin: vec2<u32>, tile: u32, lane: u32, fill: bool) -> v
 }
 
 fn draw_triangle(prim: u32, tile: u32, lane: u32, fill: bool) {
-    let sample = first_sample(tile);
+    let place = first_place(tile);
     let s = prepare(prim);
     // A key lies between those of the corners.
     let z = depths(s);
     if min(z.x, min(z.y, z.z)) >= atomicLoad(&last_end) {
         return;
     }
-    let is_tested = fill || max(z.x, max(z.y, z.z)) >= atomicLoad(&first_end);
-    var own = edges_of(prim, s, sample);
-    if own.is_full != 0u && !is_tested {
+    let is_tested = max(z.x, max(z.y, z.z)) >= atomicLoad(&first_end);
+    var own = edges_of(prim, s, place);
+    if own.is_full != 0u && !is_tested && !fill {
         atomicAdd(&everywhere, 1u);
         return;
     }
-    let spot = spot_of(s, sample);
+    own.is_tested = u32(is_tested);
+    let spot = spot_of(s, place);
     if spot.pixels <= SPOT {
-        draw_spot(tile, s, spot, own, is_tested, fill);
+        draw_spot(tile, s, spot, own, fill);
         return;
     }
     atomicOr(&larger[lane / 32u], 1u << (lane % 32u));
-    own.is_tested = u32(is_tested);
     edges[lane] = own;
-    if is_tested {
-        steps[lane] = steps_of(s, sample, own.columns, own.rows);
+    if fill || is_tested {
+        steps[lane] = steps_of(s, place, own.columns, own.rows);
     }
 }
 
 // A triangle by itself.
-fn draw_spot(tile: u32, s: Setup, spot: Spot, edges: Edges, is_tested: bool, fill: bool) {
+fn draw_spot(tile: u32, s: Setup, spot: Spot, edges: Edges, fill: bool) {
     for (var i = 0; i < spot.pixels; i += 1) {
         let at = spot.first + vec2(i % spot.across, i / spot.across);
-        if covers(edges, at) {
-            var key = 0u;
-            if is_tested {
-                key = key_of(s, spot.sample + (at << vec2(frame.bits)));
-            }
+        let covered = small_at(s, spot, edges, tile, at, fill);
+        if covered.mask != 0u {
             let pixel = u32(at.y) * SIDE + u32(at.x);
-            if key < ends[pixel] {
-                put_small(tile, pixel, vec2(key, edges.prim), fill);
-            }
+            put_small(tile, pixel, vec2(covered.key, packed(edges.prim, covered.mask)), fill);
         }
     }
 }
@@ -174,19 +177,8 @@ fn key_of(s: Setup, point: vec2<i32>) -> u32 {
 
 // A larger triangle, at this invocation's pixel.
 fn draw_larger(own: ptr<function, Pixel>, i: u32, fill: bool) {
-    let at = vec2((*own).lane % SIDE, (*own).lane / SIDE);
-    if edges[i].is_full == 0u && !covers(edges[i], vec2<i32>(at)) {
-        return;
-    }
-    var entry = vec2(0u, edges[i].prim);
-    if fill || edges[i].is_tested != 0u {
-        let stepped = step_key(steps[i], at);
-        entry.x = stepped.key;
-        if !stepped.is_sure {
-            entry.x = key_at(entry.y, pixel_of((*own).tile, (*own).lane), 0u, 0u);
-        }
-    }
-    if entry.x < (*own).end {
-        put(own, entry, fill);
+    let covered = larger_at(i, (*own).tile, (*own).lane, (*own).end, fill);
+    if covered.mask != 0u {
+        put(own, vec2(covered.key, packed(edges[i].prim, covered.mask)), fill);
     }
 }

@@ -6,6 +6,7 @@
 // where there are `listed` and `opaque_key`.
 //#import draw
 //#import counter
+//#import digest
 
 struct List {
     // Its first entry, and CONTIGUOUS.
@@ -38,6 +39,9 @@ const IN_ORDER: u32 = 0x80000000u;
 
 // Entries of the longest list of a tile with rows.
 const ROWS: u32 = 64u;
+
+// In `start`: its tile is done, and has no lists.
+const NO_LIST: u32 = 0xffffffffu;
 
 // A list as it is read and written.
 struct Run {
@@ -133,7 +137,17 @@ fn write(run: Run, i: u32, entry: Listed) {
 }
 
 fn count_lists(tile: u32, lane: u32) {
-    lists[tile * WORKGROUP + lane].length = draw(tile, lane, false).count;
+    let list = tile * WORKGROUP + lane;
+    if is_left(tile) {
+        lists[list].length = draw(tile, lane, false).count;
+    } else {
+        lists[list].start = NO_LIST;
+    }
+}
+
+// Whether there is such a tile that has lists.
+fn has_lists(tile: u32) -> bool {
+    return tile < tiled.items && lists[tile * WORKGROUP].start != NO_LIST;
 }
 
 fn fill_lists(tile: u32, lane: u32) {

@@ -79,7 +79,7 @@ fn put_small(tile: u32, pixel: u32, entry: Listed, fill: bool) {
     if i < regions[tile].capacity {
         let address = regions[tile].first + i;
         let next = atomicExchange(&first_nodes[pixel], address);
-        nodes[address] = Node(entry.x, next, entry.y, 1u);
+        nodes[address] = Node(entry.x, next, prim_of(entry.y), mask_of(entry.y));
     }
 }
 
@@ -95,7 +95,7 @@ fn put(own: ptr<function, Pixel>, entry: Listed, fill: bool) {
         return;
     }
     let address = (*own).held.first + i;
-    nodes[address] = Node(entry.x, (*own).held.head, entry.y, 1u);
+    nodes[address] = Node(entry.x, (*own).held.head, prim_of(entry.y), mask_of(entry.y));
     (*own).held.head = address;
     (*own).held.in_order = (*own).held.in_order && less(entry, (*own).held.last);
     (*own).held.last = entry;
@@ -190,27 +190,29 @@ fn linked_blend(
     if pixel == NOWHERE {
         return;
     }
-    let end = opaque_key[pixel];
+    let behind = behind_at(pixel);
     var at = heads[pixel];
-    var seen = vec4(0.0, 0.0, 0.0, 1.0);
+    var seen = unseen();
     if tiled.first > 0u {
         at = progress.pixels[pixel].left;
         if progress.pixels[pixel].state == DONE {
             return;
         }
-        seen = picture[pixel];
+        seen = kept_of(pixel);
     }
     for (var i = 0u; i < tiled.count; i += 1u) {
-        if at == EOL || tiled.first + i >= tiled.layers || seen.a == 0.0 || nodes[at].key >= end {
+        let is_end = at == EOL || tiled.first + i >= tiled.layers || is_covered_up(seen);
+        if is_end || is_hidden(nodes[at].key, behind) {
             progress.pixels[pixel].state = DONE;
-            shown(pixel, seen);
+            show(pixel, seen);
             return;
         }
-        seen = over(seen, nodes[at].prim);
-        at = nodes[at].next;
+        let node = nodes[at];
+        seen = over(seen, vec2(node.key, packed(node.prim, node.mask)), behind);
+        at = node.next;
     }
     progress.pixels[pixel].left = at;
     progress.pixels[pixel].state = FIND;
-    picture[pixel] = seen;
+    keep(pixel, seen);
     atomicStore(&progress.unfinished, 1u);
 }

@@ -6,28 +6,12 @@
 //#import entry
 //#import draw
 //#import shown
+//#import digest
 
 const FROM_BACK: bool = false;
 
-// Triangles of the longest bin that is in order. Twin: LONG in sort.wgsl.
-const BIN_SORTED: u32 = 512u;
-
 // Fragments that wait.
 const WINDOW: u32 = 8u;
-
-// Of a pixel: fragments that were blended or are waiting, and a digest of them in order.
-struct Digest {
-    count: u32,
-    words: u32,
-}
-
-struct Digests {
-    // Tiles that are not finished.
-    left: atomic<u32>,
-    pixels: array<Digest>,
-}
-
-@group(0) @binding(33) var<storage, read_write> digests: Digests;
 
 struct Held {
     // What waits, nearest first; at first, nothing that can be blended.
@@ -43,9 +27,8 @@ struct Held {
     last: Listed,
     blended: u32,
     words: u32,
-    // From here on fragments are hidden.
-    end: u32,
-    seen: vec4<f32>,
+    behind: Behind,
+    seen: Seen,
     is_out_of_order: bool,
 }
 
@@ -64,9 +47,9 @@ var<workgroup> first_small: array<atomic<u32>, WORKGROUP>;
 var<workgroup> left_over: atomic<u32>;
 
 fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
-    (*own).held.seen = vec4(0.0, 0.0, 0.0, 1.0);
+    (*own).held.seen = unseen();
     if (*own).end != 0u {
-        (*own).held.end = opaque_key[pixel_of((*own).tile, (*own).lane)];
+        (*own).held.behind = behind_at(pixel_of((*own).tile, (*own).lane));
     }
     atomicStore(&first_small[(*own).lane], NOTHING);
     if (*own).lane == 0u {
@@ -169,8 +152,8 @@ fn blend(own: ptr<function, Pixel>, entry: Listed) {
     (*own).held.is_out_of_order = (*own).held.is_out_of_order || less(entry, (*own).held.last);
     (*own).held.last = entry;
     (*own).held.words = digested((*own).held.words, entry);
-    if entry.x < (*own).held.end && (*own).held.blended < tiled.layers {
-        (*own).held.seen = over((*own).held.seen, entry.y);
+    if !is_hidden(entry.x, (*own).held.behind) && (*own).held.blended < tiled.layers {
+        (*own).held.seen = over((*own).held.seen, entry, (*own).held.behind);
     }
     (*own).held.blended += 1u;
 }
@@ -199,8 +182,7 @@ fn draw_local(tile: u32, lane: u32) {
     finish(&own, 6u, p.g);
     finish(&own, 7u, p.h);
     let bin = bin_of(tile);
-    // Longer bins are in whatever order invocations came.
-    let is_cut = bin.y - bin.x > min(tiled.count, BIN_SORTED);
+    let is_cut = bin.y - bin.x > tiled.count;
     if own.held.is_out_of_order || is_cut {
         atomicStore(&left_over, 1u);
     }
@@ -208,15 +190,11 @@ fn draw_local(tile: u32, lane: u32) {
     let is_other = atomicLoad(&left_over) != 0u;
     let pixel = pixel_of(tile, lane);
     if !is_other && pixel != NOWHERE {
-        shown(pixel, own.held.seen);
-        digests.pixels[pixel] = Digest(own.count, own.held.words);
+        show(pixel, own.held.seen);
+        digests.pixels[pixel] = Digest(own.count | select(0u, FINISHED, lane == 0u), own.held.words);
     }
-    if lane == 0u {
-        if is_other {
-            atomicAdd(&digests.left, 1u);
-        } else {
-            bins[tile] |= FINISHED;
-        }
+    if is_other && lane == 0u {
+        atomicAdd(&digests.left, 1u);
     }
 }
 

@@ -20,22 +20,22 @@ fn long_entry(group: u32, lane: u32) -> Deep {
     return Deep(at, run.start, run.start + run.length);
 }
 
-// A pixel, its list, and the key of what is opaque there.
+// A pixel, its list, and what lies behind.
 struct Own {
     pixel: u32,
     run: Run,
-    end: u32,
+    behind: Behind,
 }
 
 fn pixel_at(tile: u32, lane: u32) -> Own {
-    if !is_left(tile) {
+    if !has_lists(tile) {
         return Own(NOWHERE, Run(0u, 0u, 0u, true), 0u);
     }
     let pixel = pixel_of(tile, lane);
     if pixel == NOWHERE {
         return Own(NOWHERE, Run(0u, 0u, 0u, true), 0u);
     }
-    return Own(pixel, run_at(tile, lane), opaque_key[pixel]);
+    return Own(pixel, run_at(tile, lane), behind_at(pixel));
 }
 
 fn entry_of(run: Run, i: u32, length: u32) -> Listed {
@@ -47,25 +47,25 @@ fn entry_of(run: Run, i: u32, length: u32) -> Listed {
 
 // A list in order, four entries at a time, so that they are on their way at once. What nothing is seen
 // through ends it.
-fn shaded(own: Own) -> vec4<f32> {
+fn shaded(own: Own) -> Seen {
     let length = min(own.run.length, tiled.layers);
-    var seen = vec4(0.0, 0.0, 0.0, 1.0);
-    for (var i = 0u; i < length && seen.a > 0.0; i += 4u) {
+    var seen = unseen();
+    for (var i = 0u; i < length && !is_covered_up(seen); i += 4u) {
         let a = entry_of(own.run, i, length);
         let b = entry_of(own.run, i + 1u, length);
         let c = entry_of(own.run, i + 2u, length);
         let d = entry_of(own.run, i + 3u, length);
-        seen = over_before(seen, a, own.end);
-        seen = over_before(seen, b, own.end);
-        seen = over_before(seen, c, own.end);
-        seen = over_before(seen, d, own.end);
+        seen = over_before(seen, a, own.behind);
+        seen = over_before(seen, b, own.behind);
+        seen = over_before(seen, c, own.behind);
+        seen = over_before(seen, d, own.behind);
     }
     return seen;
 }
 
-fn over_before(seen: vec4<f32>, entry: Listed, end: u32) -> vec4<f32> {
-    if entry.x >= end {
+fn over_before(seen: Seen, entry: Listed, behind: Behind) -> Seen {
+    if is_hidden(entry.x, behind) {
         return seen;
     }
-    return over(seen, entry.y);
+    return over(seen, entry, behind);
 }

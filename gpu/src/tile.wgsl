@@ -1,7 +1,8 @@
 // A tile of 8 x 8 pixels, drawn by a workgroup: an invocation owns a pixel, so that what is kept of it
-// needs no atomics, and what depends on a triangle alone is worked out once for 64 pixels.
+// needs no atomics but for small triangles, and what depends on a triangle alone is worked out once for 64
+// pixels.
 // Imported where there are `bins`. Twin: spec/src/tiles.rs.
-//#import steps
+//#import covered
 
 // Pixels along a side.
 const SIDE: u32 = 8u;
@@ -24,16 +25,8 @@ struct Tiled {
 @group(0) @binding(14) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(15) var<storage, read_write> binned: array<u32>;
 
-// In `bins`: the tile's pixels are done. No bin begins so far on.
-const FINISHED: u32 = 0x80000000u;
-
 fn bin_of(tile: u32) -> vec2<u32> {
-    return vec2(bins[tile], bins[tile + 1u]) & vec2(~FINISHED);
-}
-
-// Whether there is such a tile that is not done.
-fn is_left(tile: u32) -> bool {
-    return tile < tiled.items && (bins[tile] & FINISHED) == 0u;
+    return vec2(bins[tile], bins[tile + 1u]);
 }
 
 fn tiles_across() -> u32 {
@@ -59,29 +52,22 @@ fn pixel_of(tile: u32, lane: u32) -> u32 {
     return select(NOWHERE, pixel.y * frame.width + pixel.x, inside);
 }
 
-// The sample of a tile's first pixel, in sub-pixels.
-fn first_sample(tile: u32) -> vec2<i32> {
-    let pixel = origin_of(tile);
-    return sample_at(pixel.x, pixel.y + frame.first_row, 0u);
+// What a tile's first pixel is told from, in sub-pixels.
+fn first_place(tile: u32) -> vec2<i32> {
+    let pixel = origin_of(tile) + vec2(0u, frame.first_row);
+    return vec2<i32>(pixel << vec2(frame.bits)) + reference();
 }
 
-// A triangle as a tile sees it: edge functions at the first sample, less the least of a covered one,
-// in steps of the pixel grid, rounded down; and their changes to the next column and row.
-//
-// From one sample to another of the tile an edge function changes by a whole number of such steps,
-// so that rounding down changes no sign. It changes by less than 2^25 of them (14 changes, each a
-// side's length in sub-pixels, at most 2^20), so that neither does a limit of 2^26: 32 bits do.
-struct Edges {
-    low: vec3<i32>,
-    prim: u32,
-    columns: vec3<i32>,
-    // Whether it covers all of the tile.
-    is_full: u32,
-    rows: vec3<i32>,
-    // Whether some of its fragments may lie behind what is opaque.
-    is_tested: u32,
+// Of samples, from there on: the least and the largest, right and down each by itself, in sub-pixels.
+struct Places {
+    low: vec2<i32>,
+    high: vec2<i32>,
 }
 
+// Edge functions are told in steps of the pixel grid, rounded down. From a pixel to another of the tile
+// one changes by a whole number of them, so that rounding down changes no sign, and by less than 2^25
+// (14 changes, each a side's length in sub-pixels, at most 2^20): a limit of 2^26 changes none either,
+// and 32 bits do.
 const EDGE_MOST: i32 = 1 << 26u;
 const EDGE_BITS: u32 = 26u;
 
@@ -106,21 +92,8 @@ fn rows_of(s: Setup) -> vec3<i32> {
     return vec3(s.c.x - s.b.x, s.a.x - s.c.x, s.b.x - s.a.x);
 }
 
-fn edges_of(prim: u32, s: Setup, sample: vec2<i32>) -> Edges {
-    let low = vec3(
-        limited(wide_sub(edge(s.b, s.c, sample), wide(least(s.b, s.c)))),
-        limited(wide_sub(edge(s.c, s.a, sample), wide(least(s.c, s.a)))),
-        limited(wide_sub(edge(s.a, s.b, sample), wide(least(s.a, s.b)))),
-    );
-    let columns = columns_of(s);
-    let rows = rows_of(s);
-    let most = i32(SIDE) - 1;
-    let worst = low + most * (min(columns, vec3(0)) + min(rows, vec3(0)));
-    return Edges(low, prim, columns, u32((worst.x | worst.y | worst.z) >= 0), rows, 1u);
-}
-
-// Edge functions of a triangle at the band's first sample, each less the least of a covered one, and
-// moved to the corner of a tile where it is largest.
+// Edge functions of a triangle at the band's first pixel, each less the least of a covered sample, and
+// moved to the corner of what a tile's samples span where it is largest.
 struct Reach {
     a: Wide,
     b: Wide,
@@ -130,25 +103,28 @@ struct Reach {
 }
 
 fn reach_of(s: Setup) -> Reach {
-    let sample = first_sample(0u);
+    let place = first_place(0u);
     let columns = columns_of(s);
     let rows = rows_of(s);
     let most = (i32(SIDE) - 1) * (max(columns, vec3(0)) + max(rows, vec3(0)));
+    // Within a pixel; less than 2^29.
+    let inner = places();
+    let more = max(columns * inner.low.x, columns * inner.high.x) + max(rows * inner.low.y, rows * inner.high.y);
     return Reach(
-        farthest(s.b, s.c, sample, most.x),
-        farthest(s.c, s.a, sample, most.y),
-        farthest(s.a, s.b, sample, most.z),
+        farthest(s.b, s.c, place, most.x, more.x),
+        farthest(s.c, s.a, place, most.y, more.y),
+        farthest(s.a, s.b, place, most.z, more.z),
         columns,
         rows,
     );
 }
 
-fn farthest(a: vec3<i32>, b: vec3<i32>, sample: vec2<i32>, most: i32) -> Wide {
-    let value = wide_sub(edge(a, b, sample), wide(least(a, b)));
+fn farthest(a: vec3<i32>, b: vec3<i32>, place: vec2<i32>, most: i32, more: i32) -> Wide {
+    let value = wide_sub(edge(a, b, place), wide(least(a, b) - more));
     return wide_add(value, wide_shift(wide(most), frame.bits));
 }
 
-// Whether an edge leaves any sample of a tile to the triangle, for all three.
+// Whether an edge leaves any of what a tile's samples span to the triangle, for all three.
 fn meets(reach: Reach, tile: vec2<u32>) -> bool {
     let pixel = vec2<i32>(SIDE * tile);
     return !(wide_negative(moved(reach.a, reach.columns.x, reach.rows.x, pixel))
@@ -161,25 +137,20 @@ fn moved(value: Wide, column: i32, row: i32, pixel: vec2<i32>) -> Wide {
     return wide_add(value, wide_shift(change, frame.bits));
 }
 
-// Whether a triangle covers a sample of the tile.
-fn covers(edges: Edges, at: vec2<i32>) -> bool {
-    let e = edges.low + edges.columns * at.x + edges.rows * at.y;
-    return (e.x | e.y | e.z) >= 0;
-}
-
-// Pixels of a tile of which the samples lie within a triangle's box, and how many.
+// Pixels of a tile of which samples may lie within a triangle's box, and how many.
 struct Spot {
-    sample: vec2<i32>,
+    place: vec2<i32>,
     first: vec2<i32>,
     across: i32,
     pixels: i32,
 }
 
-fn spot_of(s: Setup, sample: vec2<i32>) -> Spot {
-    let low = min(s.a.xy, min(s.b.xy, s.c.xy)) - sample;
-    let high = max(s.a.xy, max(s.b.xy, s.c.xy)) - sample;
-    // Shifts round down: the first sample at or after `low`, and the last up to `high`.
+fn spot_of(s: Setup, place: vec2<i32>) -> Spot {
+    let inner = places();
+    let low = min(s.a.xy, min(s.b.xy, s.c.xy)) - place - inner.high;
+    let high = max(s.a.xy, max(s.b.xy, s.c.xy)) - place - inner.low;
+    // Shifts round down: the first pixel at or after `low`, and the last up to `high`.
     let first = max(-((-low) >> vec2(frame.bits)), vec2(0));
     let size = max(min(high >> vec2(frame.bits), vec2(i32(SIDE) - 1)) - first + 1, vec2(0));
-    return Spot(sample, first, size.x, size.x * size.y);
+    return Spot(place, first, size.x, size.x * size.y);
 }

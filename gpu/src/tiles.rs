@@ -101,7 +101,8 @@ pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Drawn, G
     let mut result = Drawn::default();
     let draw = |band, capacity| attempt::run(rasterizer, &options, band, capacity);
     let add = |part| result.add(part);
-    attempt::in_bands(rasterizer, room::NEED, options.capacity, draw, add)?;
+    let need = room::need(rasterizer.samples.count());
+    attempt::in_bands(rasterizer, need, options.capacity, draw, add)?;
     Ok(result)
 }
 

@@ -1,8 +1,8 @@
 // A-buffer by tiles: triangles are put in bins, and each tile of the target is drawn by a workgroup.
 // Yang et al. 2010, sections 2, 3.1 and 4.1, with other ways to lay lists out. Twin: spec/src/tiles.rs.
 //
-// Bins and lists are counted, filled and sorted in passes of their own, and read in later ones. A
-// pixel's list is written by the one invocation that owns the pixel.
+// Bins and lists are counted, filled and sorted in passes of their own, and read in later ones. Lists of
+// a tile are written by one workgroup, each of their words once in a pass.
 //#import entry
 //#import bin
 //#import scan
@@ -11,6 +11,7 @@
 //#import shade
 //#import network
 
+// The longest list that stage shade leaves to other kernels, which know it already.
 @group(0) @binding(12) var<storage, read_write> unfinished: atomic<u32>;
 
 // Stage bin: one triangle.
@@ -103,7 +104,7 @@ fn jagged_count(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if is_left(tile) {
+    if tile < tiled.items {
         count_lists(tile, lane);
     }
 }
@@ -116,7 +117,7 @@ fn jagged_place(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if is_left(tile) {
+    if tile < tiled.items && is_left(tile) {
         place_lists(tile, lane);
     }
 }
@@ -129,7 +130,7 @@ fn jagged_fill(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if is_left(tile) {
+    if has_lists(tile) {
         fill_lists(tile, lane);
     }
 }
@@ -142,7 +143,7 @@ fn shade_sort(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = chunk_of(group, groups);
-    if !is_left(tile) {
+    if !has_lists(tile) {
         return;
     }
     let run = run_at(tile, lane);
@@ -184,7 +185,7 @@ fn shade_ordered(
 ) {
     let own = pixel_at(chunk_of(group, groups), lane);
     if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.in_order {
-        shown(own.pixel, shaded(own));
+        show(own.pixel, shaded(own));
     }
 }
 
@@ -207,21 +208,21 @@ fn shade_long(
     if tiled.first > 0u && tiled.first >= length {
         return;
     }
-    var seen = vec4(0.0, 0.0, 0.0, 1.0);
+    var seen = unseen();
     if tiled.first > 0u {
-        seen = picture[own.pixel];
+        seen = kept_of(own.pixel);
     }
     let last = min(length, tiled.first + tiled.count);
     for (var i = tiled.first; i < last; i += 1u) {
         let entry = listed[own.run.start + i];
-        if entry.x >= own.end {
+        if is_hidden(entry.x, own.behind) {
             break;
         }
-        seen = over(seen, entry.y);
+        seen = over(seen, entry, own.behind);
     }
     if last == length {
-        shown(own.pixel, seen);
+        show(own.pixel, seen);
     } else {
-        picture[own.pixel] = seen;
+        keep(own.pixel, seen);
     }
 }

@@ -69,6 +69,11 @@ fn depths(s: Setup) -> vec3<u32> {
 // Most samples of a pixel.
 const SAMPLES_MAX: u32 = 8u;
 
+// The mask of all samples.
+fn all_samples() -> u32 {
+    return (1u << frame.samples) - 1u;
+}
+
 // Where a sample lies within its pixel, in sub-pixels.
 fn sample_place(s: u32) -> vec2<i32> {
     let place = frame.places[s / 4u][s % 4u];

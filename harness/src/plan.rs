@@ -3,6 +3,7 @@
 mod layouts;
 mod rivals;
 
+use triptych_spec::abuffer::Order;
 use triptych_spec::scene::Scene;
 
 use crate::registry::{Chain, stages_of};
@@ -97,8 +98,9 @@ impl Plan {
         }
         decide("resolve", true, "the picture".into(), "");
         let samples = scene.samples.count();
+        let by_sample = samples > 1 && scene.order == Order::Sample;
         passes.extend(asked.passes(transparent, samples));
-        passes.extend(by_tiles(transparent, samples, skip));
+        passes.extend(by_tiles(transparent, by_sample, skip));
         passes.extend(layouts::passes(asked.rivals, transparent));
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
@@ -130,11 +132,11 @@ impl Plan {
     }
 }
 
-/// The passes of lists by tiles, which know one sample a pixel.
-fn by_tiles(transparent: usize, samples: u32, skip: bool) -> impl Iterator<Item = Pass> {
+/// The passes of lists by tiles, which have one order for all samples of a pixel.
+fn by_tiles(transparent: usize, by_sample: bool, skip: bool) -> impl Iterator<Item = Pass> {
     let none = "no transparent triangles";
-    let reason = move || match (samples, transparent, skip) {
-        (2.., ..) => format!("tiles have one sample a pixel, not {samples}"),
+    let reason = move || match (by_sample, transparent, skip) {
+        (true, ..) => "layers lie by their keys at each sample".to_owned(),
         (_, 0, true) => none.to_owned(),
         (_, 0, false) => format!("not needed ({none}), but nothing is skipped"),
         _ => format!("{transparent} transparent triangles"),
@@ -143,7 +145,7 @@ fn by_tiles(transparent: usize, samples: u32, skip: bool) -> impl Iterator<Item 
         .into_iter()
         .map(move |name| Pass {
             name,
-            runs: samples < 2 && (transparent > 0 || !skip),
+            runs: !by_sample && (transparent > 0 || !skip),
             reason: reason(),
         })
 }

@@ -13,9 +13,9 @@ mod local;
 
 use std::ops::Range;
 
-use crate::abuffer::{Opaque, Sorted, resolve};
+use crate::abuffer::{Opaque, Sorted, resolve, visible};
 use crate::bound::Bounded;
-use crate::raster::{Fragment, Setup, sample};
+use crate::raster::{Fragment, Samples, Setup, samples_of};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
 
@@ -84,8 +84,28 @@ pub struct Jagged {
     /// Of each tile, how many entries lie in rows before each of [`ROWS`]: entry `i` of a list is at
     /// `start + rows[ROWS * tile + i]`. `None` where it is at `start + i`.
     pub rows: Vec<Option<[u32; ROWS as usize]>>,
-    /// Depth key and row of [`Primitives::prims`].
+    /// Depth key and [`packed`] triangle of each fragment.
     pub entries: Vec<[u32; 2]>,
+}
+
+/// Most triangles where pixels have several samples: a mask takes eight bits of a word.
+pub const PRIMS_MAX: u32 = 1 << 24;
+
+/// A fragment's row of [`Primitives::prims`], and its mask where there are several samples: a word, so
+/// that an entry takes 8 bytes, and words of a list are in order of triangle.
+pub fn packed(samples: Samples, prim: u32, mask: u32) -> u32 {
+    match samples.count() {
+        1 => prim,
+        _ => prim << 8 | mask,
+    }
+}
+
+/// Triangle and mask of a [`packed`] word.
+pub fn unpacked(samples: Samples, word: u32) -> (u32, u32) {
+    match samples.count() {
+        1 => (word, 1),
+        _ => (word >> 8, word & 0xff),
+    }
 }
 
 impl Jagged {
@@ -101,11 +121,12 @@ impl Jagged {
 
 /// Stage `bin`: the triangles that `select` picks, by the tiles that they may cover samples of.
 ///
-/// A tile lists a triangle if and only if a sample of the rows lies within the triangle's box in one of
-/// its columns and one of its rows, and no edge has all 64 samples of the tile on its outer side (the
-/// top-left rule included). So nothing that is covered is left out, and most of what is not is.
+/// Samples of a pixel stand for the smallest rectangle that holds them: one sample for a point. A tile
+/// lists a triangle if and only if the triangle's box meets that of a pixel of the rows in one of its
+/// columns and one of its rows, and no edge has all of the tile's on its outer side (the top-left rule
+/// included). So nothing that is covered is left out, and most of what is not is.
 pub fn bin(primitives: &Primitives, rows: Range<u32>, select: impl Fn(u32) -> bool) -> Bins {
-    let (size, bits) = (primitives.size, primitives.bits);
+    let size = primitives.size;
     let across = size.width.div_ceil(SIDE);
     let down = (rows.end - rows.start).div_ceil(SIDE);
     let mut bins = vec![Vec::new(); (across * down) as usize];
@@ -113,10 +134,11 @@ pub fn bin(primitives: &Primitives, rows: Range<u32>, select: impl Fn(u32) -> bo
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };
-        let columns = tiles(setup.columns(size, bits), 0..size.width);
-        for y in tiles(setup.rows(size, bits), rows.clone()) {
+        let [columns, reached] = setup.pixels(primitives);
+        let columns = tiles(columns, 0..size.width);
+        for y in tiles(reached, rows.clone()) {
             for x in columns.clone() {
-                if meets(&setup, [x * SIDE, rows.start + y * SIDE], bits) {
+                if meets(&setup, [x * SIDE, rows.start + y * SIDE], primitives) {
                     bins[(y * across + x) as usize].push(prim);
                 }
             }
@@ -144,11 +166,16 @@ fn tiles(span: Range<u32>, within: Range<u32>) -> Range<u32> {
     (start - within.start) / SIDE..(end - 1 - within.start) / SIDE + 1
 }
 
-/// Whether each edge leaves a sample of a tile to the triangle. Edge functions are linear: the largest
-/// of a square's samples is at a corner.
-fn meets(setup: &Setup, [x, y]: [u32; 2], bits: u32) -> bool {
-    let ends = |first: u32| [first, first + SIDE - 1].map(|pixel| sample(pixel, bits));
-    let (xs, ys) = (ends(x), ends(y));
+/// Whether each edge leaves something of a tile to the triangle. Edge functions are linear: the largest
+/// of a rectangle is at a corner.
+fn meets(setup: &Setup, first: [u32; 2], primitives: &Primitives) -> bool {
+    let extent = primitives.samples.extent(primitives.bits);
+    let ends = |axis: usize| {
+        let at = |pixel: u32, place: i64| (i64::from(pixel) << primitives.bits) + place;
+        let [low, high] = extent.map(|place| place[axis]);
+        [at(first[axis], low), at(first[axis] + SIDE - 1, high)]
+    };
+    let (xs, ys) = (ends(0), ends(1));
     let corners = [
         [xs[0], ys[0]],
         [xs[1], ys[0]],
@@ -159,8 +186,8 @@ fn meets(setup: &Setup, [x, y]: [u32; 2], bits: u32) -> bool {
     (0..3).all(|i| edges.iter().any(|e| e[i] >= setup.least(i)))
 }
 
-/// Stage `jagged`: the fragments of all tiles in lists, in order of triangle; one at or behind the
-/// opaque key is left out if `depth_test` is set.
+/// Stage `jagged`: the fragments of all tiles in lists, in order of triangle; if `depth_test` is set,
+/// those that are hidden are left out, and samples at which one is are not in its mask.
 ///
 /// Lists are counted first. Of a tile, entries with the same number lie in a row, those of the longest
 /// list first, of equally long ones those of the first pixel; row after row, tile after tile. There is
@@ -170,9 +197,13 @@ pub fn jagged(primitives: &Primitives, opaque: &Opaque, depth_test: bool, bins: 
     for tile in 0..bins.tiles() {
         let mut lists = vec![Vec::new(); LISTS as usize];
         for &prim in bins.bin(tile) {
-            draw(primitives, prim, bins, tile, |list, pixel, key| {
-                if !depth_test || key < opaque.key[pixel] {
-                    lists[list].push([key, prim]);
+            draw(primitives, prim, bins, tile, |list, f| {
+                let mask = match depth_test {
+                    true => visible(primitives, opaque, &f),
+                    false => f.mask,
+                };
+                if mask != 0 {
+                    lists[list].push([f.key, packed(primitives.samples, prim, mask)]);
                 }
             });
         }
@@ -181,27 +212,31 @@ pub fn jagged(primitives: &Primitives, opaque: &Opaque, depth_test: bool, bins: 
     jagged
 }
 
-/// The samples of a tile that a triangle covers: number of the list, pixel of the target, key.
+/// The pixels of a tile of which a triangle covers a sample: number of the list, and fragment.
 fn draw(
     primitives: &Primitives,
     prim: u32,
     bins: &Bins,
     tile: usize,
-    mut emit: impl FnMut(usize, usize, u32),
+    mut emit: impl FnMut(usize, Fragment),
 ) {
-    let (size, bits) = (primitives.size, primitives.bits);
+    let (size, bits, samples) = (primitives.size, primitives.bits, primitives.samples);
     let setup = Setup::new(primitives, prim).expect("bins hold triangles with an area");
     let [left, top] = bins.origin(tile);
     for y in top..(top + SIDE).min(bins.rows.end) {
         for x in left..(left + SIDE).min(size.width) {
-            let edges = setup.edges([sample(x, bits), sample(y, bits)]);
-            if setup.covers(edges) {
+            let edges = |s: u32| setup.edges(samples.point(s, [x, y], bits));
+            let covered = samples_of(samples.all()).filter(|s| setup.covers(edges(*s)));
+            let mask: u32 = covered.map(|s| 1 << s).sum();
+            if mask != 0 {
                 let list = (y - top) * SIDE + (x - left);
-                emit(
-                    list as usize,
-                    (y * size.width + x) as usize,
-                    setup.key(edges),
-                );
+                let fragment = Fragment {
+                    pixel: y * size.width + x,
+                    prim,
+                    key: setup.key(edges(mask.trailing_zeros())),
+                    mask,
+                };
+                emit(list as usize, fragment);
             }
         }
     }
@@ -268,12 +303,13 @@ pub fn sorted(primitives: &Primitives, bins: &Bins, jagged: &Jagged) -> Sorted {
         let tile = y / SIDE * bins.across + x / SIDE;
         let list = (tile * LISTS + y % SIDE * SIDE + x % SIDE) as usize;
         let fragment = |i| {
-            let [key, prim] = jagged.entries[jagged.slot(list, i)];
+            let [key, word] = jagged.entries[jagged.slot(list, i)];
+            let (prim, mask) = unpacked(primitives.samples, word);
             Fragment {
                 pixel: y * width + x,
                 prim,
                 key,
-                mask: 1,
+                mask,
             }
         };
         let start = sorted.fragments.len();

@@ -153,7 +153,7 @@ proptest! {
         let most = few.attempts.iter().max().copied().unwrap_or(0);
         let all = linked(scene, primitives, (&surfaces, false), most);
         let must = sort(&build(scene, primitives, &surfaces, false, u32::MAX));
-        for (pixel, left) in local(&must).into_iter().enumerate() {
+        for (pixel, left) in local(&must, primitives.samples).into_iter().enumerate() {
             let mut list = Vec::new();
             let mut at = all.heads[pixel];
             while at != EOL {

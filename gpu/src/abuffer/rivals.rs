@@ -51,7 +51,7 @@ pub struct Rival {
     pub layers: u32,
 }
 
-/// The opaque surfaces of a band on the device.
+/// The opaque surfaces behind all samples of a band on the device.
 pub struct Surfaces {
     key: wgpu::Buffer,
     prim: wgpu::Buffer,
@@ -68,11 +68,12 @@ impl Surfaces {
         band: Band,
     ) -> Result<Self, GpuError> {
         let gpu = rasterizer.gpu;
-        let first = (band.first * rasterizer.size.width) as usize;
-        let pixels = first..first + band.pixels(rasterizer.size) as usize;
+        let each = rasterizer.samples.count() as usize;
+        let first = each * (band.first * rasterizer.size.width) as usize;
+        let samples = first..first + each * band.pixels(rasterizer.size) as usize;
         Ok(Self {
-            key: gpu.upload("opaque_key", &opaque.key[pixels.clone()])?,
-            prim: gpu.upload("opaque_prim", &opaque.prim[pixels])?,
+            key: gpu.upload("opaque_key", &opaque.key[samples.clone()])?,
+            prim: gpu.upload("opaque_prim", &opaque.prim[samples])?,
         })
     }
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use triptych_spec::abuffer::Lists;
-use triptych_spec::tiles::ROWS;
+use triptych_spec::tiles::{PRIMS_MAX, ROWS};
 
 use super::room::Room;
 use super::rows;
@@ -59,13 +59,24 @@ pub(super) fn run(
     };
     let binned = bins.last().copied().unwrap_or(0);
     let prims = rasterizer.gpu.read(room.buffers.get("binned"), binned as usize)?;
-    let drawn = (longest(&bins), options.drawn.clamp(1, DRAWN));
+    let drawn = (longest(&bins), at_once(options, rasterizer));
     let mut tried = jagged(&mut room, band, capacity, drawn)?;
     if let Tried::Done(drawn) = &mut tried {
         drawn.times.bin = bin;
         drawn.bins.push((band, bins, prims));
     }
     Ok(tried)
+}
+
+/// Triangles of a tile that one dispatch draws, so that no loop of an invocation is too long for
+/// llvmpipe: with several samples, a triangle takes an iteration for each in up to two loops, of eight
+/// pixels if it is small, but then it is one of the 64 of a batch.
+pub(super) fn at_once(options: &Options<'_>, rasterizer: &Rasterizer<'_>) -> u32 {
+    let iterations = match rasterizer.samples.count() {
+        1 => 1,
+        samples => 4 * samples,
+    };
+    options.drawn.clamp(1, DRAWN / iterations)
 }
 
 /// Puts the triangles of a band in bins: where each begins. `None` if they may have more fragments than
@@ -86,6 +97,14 @@ pub(super) fn room<'r, 'g>(
     options: &Options<'_>,
     band: Band,
 ) -> Result<Room<'r, 'g>, GpuError> {
+    if rasterizer.samples.count() > 1 && rasterizer.prims() > PRIMS_MAX {
+        return Err(GpuError::Limit {
+            adapter: rasterizer.gpu.name.clone(),
+            what: "triangles by tiles with several samples a pixel",
+            needed: rasterizer.prims().into(),
+            limit: PRIMS_MAX.into(),
+        });
+    }
     let [r, g, b] = options.background;
     let frame = Frame {
         depth_test: options.depth_test.into(),
@@ -146,7 +165,7 @@ pub(super) fn jagged(
         Ok(rows::of_rows(
             size,
             (&lists, &moved),
-            &entries,
+            (&entries, rasterizer.samples),
             &rasterizer.colours,
         ))
     };
@@ -174,8 +193,11 @@ pub(super) fn longest(offsets: &[u32]) -> u32 {
 }
 
 pub(super) fn picture(room: &Room<'_, '_>) -> Result<Vec<[f32; 3]>, GpuError> {
-    let pixels = room.frame.width * room.frame.rows;
-    image(room.rasterizer.gpu, room.buffers.get("picture"), pixels)
+    let samples = room.frame.width * room.frame.rows * room.frame.samples;
+    let picture = image(room.rasterizer.gpu, room.buffers.get("picture"), samples)?;
+    // A pixel's mean is at its first sample.
+    let pixels = picture.into_iter().step_by(room.frame.samples as usize);
+    Ok(pixels.collect())
 }
 
 pub(super) fn submit(room: &Room<'_, '_>, passes: &[Ready]) -> Result<Duration, GpuError> {

@@ -8,8 +8,8 @@ use triptych_spec::abuffer::Lists;
 use super::attempt::{self, Tried};
 use super::lists::STEPS;
 use super::nodes;
-use super::room::Room;
-use super::{DRAWN, Options, Tiled};
+use super::room::{Room, SAMPLE};
+use super::{Options, Tiled};
 use crate::abuffer::{BandResult, PROGRESS, dispatches};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -17,13 +17,16 @@ use crate::frame::Band;
 use crate::lists::until_done;
 use crate::raster::{Need, Rasterizer, SATURATED};
 
-/// Of a pixel: opaque surface, picture, head, progress of sort and blend. Of a fragment: a node.
-const NEED: Need = Need {
-    what: "linked",
-    pixel: 2 * 4 + 16 + 4 + PROGRESS,
-    node: NODE,
-    pixels_max: u64::MAX,
-};
+/// Of a sample: opaque surface, picture. Of a pixel: head, progress of sort and blend. Of a fragment: a
+/// node.
+fn need(samples: u32) -> Need {
+    Need {
+        what: "linked",
+        pixel: SAMPLE * u64::from(samples) + 4 + PROGRESS,
+        node: NODE,
+        pixels_max: u64::MAX,
+    }
+}
 
 /// Bytes of a node.
 const NODE: u64 = 16;
@@ -70,7 +73,8 @@ pub fn run(
     let mut result = Linked::default();
     let draw = |band, capacity| of_band(rasterizer, &options, (band, capacity), &inspect);
     let add = |part| result.add(part);
-    attempt::in_bands(rasterizer, NEED, options.capacity, draw, add)?;
+    let need = need(rasterizer.samples.count());
+    attempt::in_bands(rasterizer, need, options.capacity, draw, add)?;
     Ok(result)
 }
 
@@ -109,7 +113,7 @@ fn of_band(
     let Some((bins, mut time)) = attempt::bins(&mut room)? else {
         return Ok(Tried::Needs(SATURATED));
     };
-    let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
+    let drawn = (attempt::longest(&bins), attempt::at_once(options, rasterizer));
     let each = capacity / room.tiles;
     let mut regions = placed((0..room.tiles).map(|_| each));
     let mut overflowed = Vec::new();

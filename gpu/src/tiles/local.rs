@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use triptych_spec::abuffer::{EOL, Lists};
-use triptych_spec::tiles::{Digest, SIDE, digest};
+use triptych_spec::raster::Samples;
+use triptych_spec::tiles::{Digest, SIDE, digest, packed};
 
 use super::attempt::{self, Tried};
 use super::room::{self, Room};
-use super::{DRAWN, Options, Tiled, tiles};
+use super::{Options, Tiled, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -27,7 +28,7 @@ pub struct Local {
     pub time: Duration,
 }
 
-/// Marks the bin of a tile that is done. Twin: `FINISHED` in `tile.wgsl`.
+/// Marks a tile that is done, in the count of its first pixel's digest. Twin: `FINISHED` in `digest.wgsl`.
 pub const FINISHED: u32 = 0x8000_0000;
 
 /// Draws the transparent triangles, in bands of rows.
@@ -38,7 +39,8 @@ pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Local, G
     let mut result = Local::default();
     let draw = |band, capacity| of_band(rasterizer, &options, band, capacity);
     let add = |part| result.add(part);
-    attempt::in_bands(rasterizer, room::NEED, options.capacity, draw, add)?;
+    let need = room::need(rasterizer.samples.count());
+    attempt::in_bands(rasterizer, need, options.capacity, draw, add)?;
     Ok(result)
 }
 
@@ -86,7 +88,7 @@ fn of_band(
         return Ok(Tried::Needs(SATURATED));
     };
     room.with_digests()?;
-    let drawn = options.drawn.clamp(1, DRAWN);
+    let drawn = attempt::at_once(options, rasterizer);
     time += attempt::submit(&room, &[room.local(drawn, u32::MAX)?])?;
     let pixels = band.pixels(rasterizer.size) as usize;
     let words: Vec<u32> = gpu.read(room.buffers.get("digests"), 1 + 2 * pixels)?;
@@ -96,6 +98,12 @@ fn of_band(
         words: d[1],
     };
     let mut digests: Vec<Digest> = words[1..].chunks_exact(2).map(of_pixel).collect();
+    let width = rasterizer.size.width;
+    let mut finished = vec![false; room.tiles as usize];
+    for (pixel, digest) in digests.iter_mut().enumerate() {
+        finished[tile_of(pixel, width, band)] |= digest.count & FINISHED != 0;
+        digest.count &= !FINISHED;
+    }
     if left > 0 {
         let drawn = (attempt::longest(&bins), drawn);
         let lists = match attempt::jagged(&mut room, band, capacity, drawn)? {
@@ -103,12 +111,11 @@ fn of_band(
             Tried::Done(lists) => lists,
         };
         time += lists.times.jagged + lists.times.shade;
-        let marked: Vec<u32> = gpu.read(room.buffers.get("bins"), room.tiles as usize)?;
         let sorted = lists.bands.first().and_then(|band| band.sorted.as_ref());
         for (pixel, own) in digests.iter_mut().enumerate() {
-            if marked[tile_of(pixel, rasterizer.size.width, band)] & FINISHED == 0 {
+            if !finished[tile_of(pixel, width, band)] {
                 // A list that leads astray is no list.
-                let list = sorted.and_then(|lists| followed(lists, pixel));
+                let list = sorted.and_then(|lists| followed(lists, pixel, rasterizer.samples));
                 *own = list.map_or(Digest::default(), digest);
             }
         }
@@ -127,8 +134,8 @@ fn tile_of(pixel: usize, width: u32, band: Band) -> usize {
     y / SIDE as usize * across as usize + x / SIDE as usize
 }
 
-/// Key and triangle of a pixel's fragments; `None` if its links lead nowhere, or around.
-fn followed(lists: &Lists, pixel: usize) -> Option<Vec<[u32; 2]>> {
+/// The entries of a pixel's list; `None` if its links lead nowhere, or around.
+fn followed(lists: &Lists, pixel: usize, samples: Samples) -> Option<Vec<[u32; 2]>> {
     let mut list = Vec::new();
     let mut at = lists.heads[pixel];
     while at != EOL {
@@ -136,7 +143,7 @@ fn followed(lists: &Lists, pixel: usize) -> Option<Vec<[u32; 2]>> {
         if list.len() == lists.nodes.len() {
             return None;
         }
-        list.push([node.key, node.prim]);
+        list.push([node.key, packed(samples, node.prim, node.mask)]);
         at = node.next;
     }
     Some(list)

@@ -19,14 +19,19 @@ const GROUPS: u32 = 2048;
 /// Iterations of a workgroup over large triangles, at most: llvmpipe ends loops after 65,535.
 const SHARED: u64 = 1 << 15;
 
-/// Of a pixel: opaque surface, picture, list, offset of a row, longest lists. Of a fragment: an entry,
-/// and one more while long lists are put in order.
-pub(super) const NEED: Need = Need {
-    what: "jagged",
-    pixel: 2 * 4 + 16 + LIST + 2 * 4,
-    node: 16,
-    pixels_max: u64::MAX,
-};
+/// Of a sample: opaque surface, picture. Of a pixel: list, offset of a row, longest lists. Of a fragment:
+/// an entry, and one more while long lists are put in order.
+pub(super) fn need(samples: u32) -> Need {
+    Need {
+        what: "jagged",
+        pixel: SAMPLE * u64::from(samples) + LIST + 2 * 4,
+        node: 16,
+        pixels_max: u64::MAX,
+    }
+}
+
+/// Bytes of a sample: what is opaque, and what is seen.
+pub(super) const SAMPLE: u64 = 2 * 4 + 16;
 
 /// What is known of lists once they are placed. Twin: `Longest` in `jagged.wgsl`.
 #[repr(C)]
@@ -65,7 +70,7 @@ impl<'r, 'g> Room<'r, 'g> {
         let width = rasterizer.size.width;
         let [across, down] = tiles(width, band);
         let (tiles, lists) = (across * down, lists(width, band));
-        let pixels = band.pixels(rasterizer.size);
+        let samples = rasterizer.samples.count() * band.pixels(rasterizer.size);
         let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
         let buffers = vec![
             ("bins", words("offsets of tiles", tiles + 1)?),
@@ -79,7 +84,9 @@ impl<'r, 'g> Room<'r, 'g> {
             ("longest", words("longest lists", lists + 3)?),
             ("counter", words("counter", 1)?),
             ("unfinished", words("unfinished", 1)?),
-            ("picture", gpu.storage("picture", 16 * u64::from(pixels))?),
+            // Where all tiles have lists, there are no digests.
+            ("digests", words("digests", 1 + 2)?),
+            ("picture", gpu.storage("picture", 16 * u64::from(samples))?),
         ];
         Ok(Self {
             in_tiles: words("triangles of tiles", tiles)?,
@@ -131,10 +138,13 @@ impl<'r, 'g> Room<'r, 'g> {
             ("faces", &self.rasterizer.faces),
         ]);
         all.extend(self.buffers.iter());
-        let file = match entry {
-            "local" => "local",
-            "linked" | "linked_sort" | "linked_blend" => "linked",
-            _ => "tiles",
+        let file = match (entry, self.frame.samples) {
+            ("local", 1) => "local",
+            ("local", _) => "local_samples",
+            ("linked" | "linked_sort" | "linked_blend", 1) => "linked",
+            ("linked" | "linked_sort" | "linked_blend", _) => "linked_samples",
+            (_, 1) => "tiles",
+            _ => "tiles_samples",
         };
         Ready::new(gpu, kernels, (file, entry), groups, &all)
     }

@@ -2,7 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::{EOL, Lists, Node};
-use triptych_spec::tiles::{ROWS, SIDE};
+use triptych_spec::raster::Samples;
+use triptych_spec::tiles::{ROWS, SIDE, unpacked};
 
 use super::tiles;
 use crate::frame::{Band, WORKGROUP};
@@ -30,25 +31,29 @@ pub const IN_ORDER: u32 = 0x8000_0000;
 pub(super) fn of_rows(
     (width, band): (u32, Band),
     (lists, rows): (&[List], &[u32]),
-    entries: &[[u32; 2]],
+    (entries, samples): (&[[u32; 2]], Samples),
     faces: &[[f32; 4]],
 ) -> Lists {
     let [across, _] = tiles(width, band);
     let all = u32::try_from(entries.len()).expect("addresses are words");
-    let node = |&[key, prim]: &[u32; 2]| Node {
-        key,
-        next: EOL,
-        prim,
-        mask: 1,
+    let node = |&[key, word]: &[u32; 2]| {
+        let (prim, mask) = unpacked(samples, word);
+        Node {
+            key,
+            next: EOL,
+            prim,
+            mask,
+        }
     };
-    let colour = |&[_, prim]: &[u32; 2]| faces.get(prim as usize).copied();
+    let colour = |node: &Node| faces.get(node.prim as usize).copied();
+    let nodes: Vec<Node> = entries.iter().map(node).collect();
     let mut linked = Lists {
         heads: Vec::with_capacity((width * band.rows) as usize),
-        nodes: entries.iter().map(node).collect(),
-        colours: entries
+        colours: nodes
             .iter()
-            .map(|e| colour(e).unwrap_or([f32::NAN; 4]))
+            .map(|n| colour(n).unwrap_or([f32::NAN; 4]))
             .collect(),
+        nodes,
         attempts: all,
         capacity: all,
     };

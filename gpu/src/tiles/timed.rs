@@ -4,7 +4,7 @@ use triptych_spec::tiles::ROWS;
 
 use super::attempt::BINNED_MAX;
 use super::room::Room;
-use super::{DRAWN, Options, Region, attempt};
+use super::{Options, Region, attempt};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -142,7 +142,7 @@ impl<'r, 'g> Timed<'r, 'g> {
         attempt::fill_bins(&mut room, binned)?;
         let mut bin = room.count_bins()?;
         bin.extend(room.fill_bins(binned)?);
-        let drawn = (attempt::longest(&bins), options.drawn.clamp(1, DRAWN));
+        let drawn = (attempt::longest(&bins), attempt::at_once(options, rasterizer));
         let timed = Self {
             room,
             spans: vec![(Span::Bin, bin)],

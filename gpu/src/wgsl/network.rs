@@ -10,12 +10,15 @@ use std::fmt::Write;
 /// Entries that the networks sort.
 pub const SIZES: [u32; 4] = [8, 16, 32, 64];
 
-/// The file `network`: for each size a kernel that sorts and blends lists of at most as many.
-pub(super) fn text() -> String {
+/// The files `network` and, where pixels have several samples, `network_samples`: for each size a kernel
+/// that sorts and blends lists of at most as many. What is seen of several samples leaves entries no
+/// registers: these are written back and read again, one after another.
+pub(super) fn text(has_samples: bool) -> String {
     let mut text = String::from("// Lists of a few entries, sorted in registers and blended.\n");
     let mut smaller = 0;
     for size in SIZES {
-        let written = shaded(&mut text, size).and_then(|()| entry(&mut text, smaller, size));
+        let written =
+            shaded(&mut text, size, has_samples).and_then(|()| entry(&mut text, smaller, size));
         written.expect("a string takes all that is written");
         smaller = size;
     }
@@ -41,19 +44,18 @@ fn shade_{size}(
     let own = pixel_at(chunk_of(group, groups), lane);
     let in_rows = own.pixel != NOWHERE && own.run.row != CONTIGUOUS;
     if in_rows && !own.run.in_order && own.run.length <= {size}u{more} {{
-        shown(own.pixel, shaded_{size}(own.run, own.end));
+        show(own.pixel, shaded_{size}(own));
     }}
 }}
 "
     )
 }
 
-/// Reads a list, puts it in order, writes it back if that is asked for, and blends what lies in
-/// front of the key `end`.
-fn shaded(text: &mut String, size: u32) -> std::fmt::Result {
+/// Reads a list, puts it in order, writes it back if that is asked for, and blends what is not hidden.
+fn shaded(text: &mut String, size: u32, has_samples: bool) -> std::fmt::Result {
     writeln!(
         text,
-        "\nfn shaded_{size}(run: Run, end: u32) -> vec4<f32> {{"
+        "\nfn shaded_{size}(own: Own) -> Seen {{\n    let run = own.run;"
     )?;
     for i in 0..size {
         writeln!(text, "    var e{i} = LAST;")?;
@@ -65,22 +67,31 @@ fn shaded(text: &mut String, size: u32) -> std::fmt::Result {
     for (a, b) in comparisons(size) {
         exchange(text, a, b)?;
     }
-    writeln!(text, "    if tiled.stored != 0u {{")?;
-    for i in 0..size {
-        writeln!(
-            text,
-            "        if {i}u < run.length {{\n            listed[slot(run, {i}u)] = e{i};\n        }}"
-        )?;
+    if has_samples {
+        write_back(text, size)?;
+        return writeln!(text, "    return shaded(own);\n}}");
     }
-    writeln!(text, "    }}\n    var seen = vec4(0.0, 0.0, 0.0, 1.0);")?;
+    writeln!(text, "    if tiled.stored != 0u {{")?;
+    write_back(text, size)?;
+    writeln!(text, "    }}\n    var seen = unseen();")?;
     for i in 0..size {
         writeln!(
             text,
-            "    if e{i}.x < end && {i}u < tiled.layers {{\n        seen = over(seen, e{i}.y);"
+            "    if !is_hidden(e{i}.x, own.behind) && {i}u < tiled.layers {{\n        \
+            seen = over(seen, e{i}, own.behind);"
         )?;
     }
     writeln!(text, "    {}", "}".repeat(size as usize))?;
     writeln!(text, "    return seen;\n}}")
+}
+
+/// The entries back to their list.
+fn write_back(text: &mut String, size: u32) -> std::fmt::Result {
+    for i in 0..size {
+        let write = format!("listed[slot(run, {i}u)] = e{i}");
+        writeln!(text, "    if {i}u < run.length {{\n        {write};\n    }}")?;
+    }
+    Ok(())
 }
 
 /// The smaller of two entries to the first, without a branch.

@@ -23,10 +23,13 @@ const FILES: &[(&str, &str)] = shipped![
     "cells",
     "coarse",
     "counter",
+    "covered",
+    "covered_samples",
     "cover",
     "defocus",
     "density",
     "depth",
+    "digest",
     "draw",
     "drawn",
     "drawn_samples",
@@ -44,10 +47,13 @@ const FILES: &[(&str, &str)] = shipped![
     "layouts_samples",
     "ldm",
     "linked",
+    "linked_samples",
     "listing",
     "local",
+    "local_samples",
     "maps",
     "march",
+    "mean",
     "meet",
     "mirror",
     "multisample",
@@ -65,6 +71,7 @@ const FILES: &[(&str, &str)] = shipped![
     "place",
     "raster",
     "raster_samples",
+    "ratio",
     "ray",
     "receiver",
     "regions",
@@ -78,17 +85,20 @@ const FILES: &[(&str, &str)] = shipped![
     "search",
     "shade",
     "shown",
+    "shown_samples",
     "slice",
     "slots",
     "slots_wide",
     "sort",
     "sorted",
     "steps",
+    "steps_samples",
     "surface",
     "sweep",
     "texel",
     "tile",
     "tiles",
+    "tiles_samples",
     "triangle",
     "vertex",
     "view",
@@ -111,7 +121,9 @@ impl Sources {
         if let (true, Some(text)) = (native, native_wide) {
             files.insert("wide".into(), text);
         }
-        files.insert("network".into(), network::text().into());
+        for (name, has_samples) in [("network", false), ("network_samples", true)] {
+            files.insert(name.into(), network::text(has_samples).into());
+        }
         Self(files)
     }
 

@@ -171,7 +171,7 @@ impl GpuLeg<'_> {
         let gpu = gpu.map(|s| s).taking(gpu.value.time);
         let width = self.scene.size.width;
         let judgement = compare(&spec, &gpu, |spec, local| {
-            let must = triptych_spec::tiles::local(&spec.sorted);
+            let must = triptych_spec::tiles::local(&spec.sorted, self.scene.samples);
             Judgement::sum([
                 compare::image::compare(&spec.image, &local.image, width),
                 compare::tiles::digests(&must, &local.digests, width),

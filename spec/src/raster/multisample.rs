@@ -21,6 +21,19 @@ impl Setup {
         union(rows)
     }
 
+    /// Columns and rows of the target whose [`Samples::extent`] meets the triangle's box.
+    pub(crate) fn pixels(&self, primitives: &Primitives) -> [Span; 2] {
+        let (size, bits) = (primitives.size, primitives.bits);
+        let extent = primitives.samples.extent(bits);
+        let span = |axis: usize, side: u32| {
+            let [a, b, c] = self.corners.map(|corner| corner[axis]);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            let [least, largest] = extent.map(|place| place[axis]);
+            first_pixel(low, largest, bits, side)..first_pixel(high + 1, least, bits, side)
+        };
+        [span(0, size.width), span(1, size.height)]
+    }
+
     /// The pixels of a row that have a covered sample, with their masks.
     pub(super) fn masks(&self, row: u32, primitives: &Primitives, mut emit: impl FnMut(u32, u32)) {
         let (size, bits) = (primitives.size, primitives.bits);

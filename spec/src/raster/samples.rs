@@ -101,6 +101,15 @@ impl Samples {
         places.map(move |at| at.map(|place| i64::from(place) >> (POSITION_BITS - bits)))
     }
 
+    /// The least and the largest of [`Samples::offsets`], right and down each by itself.
+    pub fn extent(&self, bits: u32) -> [[i64; 2]; 2] {
+        let least = |a: [i64; 2], b: [i64; 2]| [a[0].min(b[0]), a[1].min(b[1])];
+        let largest = |a: [i64; 2], b: [i64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        let all = || self.offsets(bits);
+        let ends = [all().reduce(least), all().reduce(largest)];
+        ends.map(|end| end.expect("a pixel has a sample"))
+    }
+
     /// Where sample `s` of a pixel lies, in sub-pixels.
     pub fn point(&self, s: u32, [column, row]: [u32; 2], bits: u32) -> [i64; 2] {
         let at = self.at[s as usize];

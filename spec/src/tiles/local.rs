@@ -1,19 +1,23 @@
 //! Lists that are blended at once and never kept.
 
 use crate::abuffer::Sorted;
+use crate::raster::{Fragment, Samples};
+
+use super::packed;
 
 /// What is left of a list that was read and is gone: how long it was, and a digest of its fragments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Digest {
     /// Fragments.
     pub count: u32,
-    /// FNV-1a by words (Fowler, Noll and Vo) of key and triangle of each, from 0 on.
+    /// FNV-1a by words (Fowler, Noll and Vo) of key and packed triangle of each, from 0 on.
     pub words: u32,
 }
 
 /// Stage `local`: the digest of every pixel's list, in order. The picture is that of [`super::shade`].
-pub fn local(sorted: &Sorted) -> Vec<Digest> {
-    let list = |pixel| sorted.list(pixel).iter().map(|f| [f.key, f.prim]);
+pub fn local(sorted: &Sorted, samples: Samples) -> Vec<Digest> {
+    let entry = |f: &Fragment| [f.key, packed(samples, f.prim, f.mask)];
+    let list = |pixel| sorted.list(pixel).iter().map(entry);
     (0..sorted.offsets.len() - 1)
         .map(|pixel| digest(list(pixel)))
         .collect()

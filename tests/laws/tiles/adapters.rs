@@ -41,7 +41,7 @@ fn dispatches_go_on_where_the_last_one_stopped() {
                 assert_eq!(lists.as_ref(), Some(&must), "{words}");
                 assert_eq!(seen.image.len(), 81, "{words}");
                 let left = run_local(&rasterizer, options).expect("it runs");
-                assert_eq!(left.digests, local(&must), "{words}");
+                assert_eq!(left.digests, local(&must, primitives.samples), "{words}");
                 assert_eq!(left.image, seen.image, "{words}");
                 let nodes = run_linked(&rasterizer, options, |_| Some(depth)).expect("it runs");
                 let lists = nodes.bands[0].sorted.as_ref().and_then(flatten);

@@ -1,0 +1,4 @@
+// The kernels of linked.wgsl for pixels with several samples.
+//#import covered_samples for covered
+//#import shown_samples for shown
+//#import linked
