@@ -45,17 +45,23 @@ const ROOTS: [&str; 25] = [
 ];
 
 /// The files that have entry points of others, with other imports.
-const VARIANTS: [&str; 6] = [
+const VARIANTS: [&str; 9] = [
     "abuffer_samples",
     "layouts_samples",
+    "linked_samples",
+    "local_samples",
     "ordered_samples",
     "packed_samples",
     "raster_samples",
     "regions_samples",
+    "tiles_samples",
 ];
 
 /// WebGPU's default for `maxStorageBuffersPerShaderStage`.
 const STORAGE_BUFFERS: usize = 8;
+
+/// WebGPU's default for `maxComputeWorkgroupStorageSize`, in bytes.
+const WORKGROUP_STORAGE: u32 = 16_384;
 
 /// A program and where it comes from.
 struct Root {
@@ -161,6 +167,31 @@ fn bindings_of_an_entry_point_are_unique_and_few() {
             );
         }
     }
+}
+
+/// Nobody else looks: a driver may give more than was asked for, and another less.
+#[test]
+fn workgroups_share_no_more_memory_than_every_adapter_has() {
+    let mut most = 0;
+    for root in programs() {
+        let module = &root.program.module;
+        let mut layouter = naga::proc::Layouter::default();
+        layouter.update(module.to_ctx()).expect("it has sizes");
+        for (number, entry) in module.entry_points.iter().enumerate() {
+            let info = root.program.info.get_entry_point(number);
+            let shared = module.global_variables.iter().filter(|(handle, variable)| {
+                variable.space == AddressSpace::WorkGroup && !info[*handle].is_empty()
+            });
+            // Each is aligned for itself; 16 bytes are the largest alignment.
+            let size =
+                |(_, v): (_, &naga::GlobalVariable)| layouter[v.ty].size.next_multiple_of(16);
+            let bytes: u32 = shared.map(size).sum();
+            let at = format!("{} of {}", entry.name, root.name);
+            assert!(bytes <= WORKGROUP_STORAGE, "{at} shares {bytes} bytes");
+            most = most.max(bytes);
+        }
+    }
+    assert!(most > 8192, "the most is {most} bytes: they were not found");
 }
 
 #[test]

@@ -15,17 +15,19 @@ fn places() -> Places {
     return all;
 }
 
+const MASK_BITS: u32 = 8u;
+
 // Triangle and mask of a fragment in a word, in order of triangle.
 fn packed(prim: u32, mask: u32) -> u32 {
-    return (prim << 8u) | mask;
+    return (prim << MASK_BITS) | mask;
 }
 
 fn prim_of(word: u32) -> u32 {
-    return word >> 8u;
+    return word >> MASK_BITS;
 }
 
 fn mask_of(word: u32) -> u32 {
-    return word & 0xffu;
+    return word & ((1u << MASK_BITS) - 1u);
 }
 
 // A triangle as a tile sees it: edge functions at the first pixel's corner, less the least of a covered

@@ -110,6 +110,8 @@ fn pixel_in(tile: u32, lane: u32, fill: bool) -> Pixel {
     }
     ends[lane] = own.end;
     start_pixel(&own, fill);
+    // What it stored comes before what anybody puts, of a tile without triangles too.
+    workgroupBarrier();
     return own;
 }
 

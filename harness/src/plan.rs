@@ -98,9 +98,8 @@ impl Plan {
         }
         decide("resolve", true, "the picture".into(), "");
         let samples = scene.samples.count();
-        let by_sample = samples > 1 && scene.order == Order::Sample;
         passes.extend(asked.passes(transparent, samples));
-        passes.extend(by_tiles(transparent, by_sample, skip));
+        passes.extend(by_tiles(transparent, scene, skip));
         passes.extend(layouts::passes(asked.rivals, transparent));
         let depth_test = skip && opaque > 0 && transparent > 0;
         passes.push(Pass {
@@ -133,7 +132,8 @@ impl Plan {
 }
 
 /// The passes of lists by tiles, which have one order for all samples of a pixel.
-fn by_tiles(transparent: usize, by_sample: bool, skip: bool) -> impl Iterator<Item = Pass> {
+fn by_tiles(transparent: usize, scene: &Scene, skip: bool) -> impl Iterator<Item = Pass> {
+    let by_sample = scene.samples.count() > 1 && scene.order == Order::Sample;
     let none = "no transparent triangles";
     let reason = move || match (by_sample, transparent, skip) {
         (true, ..) => "layers lie by their keys at each sample".to_owned(),

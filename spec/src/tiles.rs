@@ -8,19 +8,21 @@
 //!
 //! Everything here is exact. Twin: `gpu/src/tiles.wgsl`.
 
+mod entry;
 mod linked;
 mod local;
 
 use std::ops::Range;
 
-use crate::abuffer::{Opaque, Sorted, resolve, visible};
+use crate::abuffer::{Opaque, resolve, visible};
 use crate::bound::Bounded;
-use crate::raster::{Fragment, Samples, Setup, samples_of};
+use crate::raster::{Fragment, Setup, samples_of};
 use crate::scene::Scene;
 use crate::vertex::Primitives;
 
+pub use entry::{packed, sorted, unpacked};
 pub use linked::linked;
-pub use local::{Digest, digest, local};
+pub use local::{BIN_SORTED, Digest, WINDOW, digest, local, needs_no_lists};
 
 /// Pixels along a side of a tile.
 pub const SIDE: u32 = 8;
@@ -86,26 +88,6 @@ pub struct Jagged {
     pub rows: Vec<Option<[u32; ROWS as usize]>>,
     /// Depth key and [`packed`] triangle of each fragment.
     pub entries: Vec<[u32; 2]>,
-}
-
-/// Most triangles where pixels have several samples: a mask takes eight bits of a word.
-pub const PRIMS_MAX: u32 = 1 << 24;
-
-/// A fragment's row of [`Primitives::prims`], and its mask where there are several samples: a word, so
-/// that an entry takes 8 bytes, and words of a list are in order of triangle.
-pub fn packed(samples: Samples, prim: u32, mask: u32) -> u32 {
-    match samples.count() {
-        1 => prim,
-        _ => prim << 8 | mask,
-    }
-}
-
-/// Triangle and mask of a [`packed`] word.
-pub fn unpacked(samples: Samples, word: u32) -> (u32, u32) {
-    match samples.count() {
-        1 => (word, 1),
-        _ => (word >> 8, word & 0xff),
-    }
 }
 
 impl Jagged {
@@ -289,37 +271,6 @@ pub fn shade(
     (bins, jagged): (&Bins, &Jagged),
 ) -> Vec<[Bounded; 3]> {
     resolve(scene, primitives, opaque, &sorted(primitives, bins, jagged))
-}
-
-/// The lists of all pixels in order, row by row of the target.
-pub fn sorted(primitives: &Primitives, bins: &Bins, jagged: &Jagged) -> Sorted {
-    let width = primitives.size.width;
-    let mut sorted = Sorted {
-        offsets: vec![0],
-        fragments: Vec::with_capacity(jagged.entries.len()),
-    };
-    for (y, x) in (0..bins.rows.end - bins.rows.start).flat_map(|y| (0..width).map(move |x| (y, x)))
-    {
-        let tile = y / SIDE * bins.across + x / SIDE;
-        let list = (tile * LISTS + y % SIDE * SIDE + x % SIDE) as usize;
-        let fragment = |i| {
-            let [key, word] = jagged.entries[jagged.slot(list, i)];
-            let (prim, mask) = unpacked(primitives.samples, word);
-            Fragment {
-                pixel: y * width + x,
-                prim,
-                key,
-                mask,
-            }
-        };
-        let start = sorted.fragments.len();
-        sorted
-            .fragments
-            .extend((0..jagged.lists[list].length).map(fragment));
-        sorted.fragments[start..].sort_unstable_by_key(|f| (f.key, f.prim));
-        sorted.offsets.push(word(sorted.fragments.len()));
-    }
-    sorted
 }
 
 fn word(n: usize) -> u32 {

@@ -15,7 +15,7 @@ use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
 use triptych_spec::layouts::MASK_BITS;
 use triptych_spec::ldm::{PLANE_BITS, WEIGHT_BITS};
 use triptych_spec::rsm::{COARSE_BITS, PLACE_MAX};
-use triptych_spec::tiles::{ROWS, SIDE};
+use triptych_spec::tiles::{BIN_SORTED, ROWS, SIDE, WINDOW};
 use triptych_spec::vertex::{CORNERS_MAX, DEPTH_ONE, GUARD};
 
 use super::everywhere;
@@ -46,6 +46,8 @@ fn constants_are_those_of_rust() {
         ("DEPTH_ONE", i64::from(DEPTH_ONE)),
         ("TILE", i64::from(TILE)),
         ("LONG", i64::from(LONG)),
+        ("LONG", i64::from(BIN_SORTED)),
+        ("WINDOW", i64::from(WINDOW)),
         ("RUN", i64::from(RUN)),
         ("SMALL", i64::from(SMALL)),
         ("CHUNK", i64::from(CHUNK)),

@@ -120,8 +120,11 @@ fn every_wgsl_file_is_reached() {
         let in_place = format!("{import} for ");
         let leads = |line: &str| line == import || line.starts_with(&in_place);
         let imported = files.iter().any(|f| f.text().lines().any(leads));
-        // What a variant has in place of an import: the fragment path's pipelines ask for it.
-        let variant = file.text().contains("//#import drawn_samples for drawn");
+        // What a variant has in place of an import: pixels with several samples ask for it.
+        let variant = ["drawn", "covered"].iter().any(|name| {
+            file.text()
+                .contains(&format!("//#import {name}_samples for {name}"))
+        });
         let stands_in = ["remove", "get"]
             .iter()
             .any(|call| linker.contains(&format!("{call}(\"{stem}\")")));

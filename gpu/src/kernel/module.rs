@@ -52,10 +52,10 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
     // SAFETY: only `Kernels::trusted` comes here, with the kernels that ship. They index by
     // pixel below the band's, by triangle below those uploaded and by node below the
     // capacity, all of which the host has made the buffers for; and they follow no link
-    // that the host has not certified for these very lists. Tiles have no links: entries are read
-    // where the same kernels have counted and filled them, from the same triangles, in bins and
-    // lists whose capacity is that of the count. So are those of other layouts, whose links are certified
-    // as well; packed and ordered ones lead nowhere but to nodes that a counter handed out.
+    // that the host has not certified for lists of the same fragments in the same buffers. Entries of
+    // tiles and of runs are read where the same kernels have counted and filled them, from the same
+    // triangles, in bins and lists whose capacity is that of the count; links of `linked` and of other
+    // layouts are certified; packed and ordered ones lead nowhere but to nodes that a counter handed out.
     unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
 }
 

@@ -242,7 +242,8 @@ fn read(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     match room.layout {
         Layout::Bucket => bucket::lists(room),
         Layout::Precalc => {
-            let offsets: Vec<u32> = gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
+            let offsets: Vec<u32> =
+                gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
             precalc::linked(room, &offsets, room.frame.capacity)
         }
         Layout::Packed => packed::lists(room),

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use triptych_spec::abuffer::Lists;
-use triptych_spec::tiles::{PRIMS_MAX, ROWS};
+use triptych_spec::layouts::PRIMS_MAX;
+use triptych_spec::tiles::ROWS;
 
 use super::room::Room;
 use super::rows;
@@ -58,7 +59,9 @@ pub(super) fn run(
         return Ok(Tried::Needs(SATURATED));
     };
     let binned = bins.last().copied().unwrap_or(0);
-    let prims = rasterizer.gpu.read(room.buffers.get("binned"), binned as usize)?;
+    let prims = rasterizer
+        .gpu
+        .read(room.buffers.get("binned"), binned as usize)?;
     let drawn = (longest(&bins), at_once(options, rasterizer));
     let mut tried = jagged(&mut room, band, capacity, drawn)?;
     if let Tried::Done(drawn) = &mut tried {

@@ -113,32 +113,30 @@ fn of_band(
     let Some((bins, mut time)) = attempt::bins(&mut room)? else {
         return Ok(Tried::Needs(SATURATED));
     };
-    let drawn = (attempt::longest(&bins), attempt::at_once(options, rasterizer));
+    let drawn = (
+        attempt::longest(&bins),
+        attempt::at_once(options, rasterizer),
+    );
     let each = capacity / room.tiles;
     let mut regions = placed((0..room.tiles).map(|_| each));
     let mut overflowed = Vec::new();
     loop {
         room.with_nodes(&regions)?;
         time += attempt::submit(&room, &room.drawn("linked", 0, drawn)?)?;
-        let counted: Vec<Region> = rasterizer.gpu.read(room.buffers.get("regions"), regions.len())?;
-        let needed: u64 = counted.iter().map(|r| u64::from(r.attempts)).sum();
-        let full = |(seen, region): (&Region, &Region)| seen.attempts > region.capacity;
-        if !counted.iter().zip(&regions).any(full) {
-            regions = counted;
+        room.count(&mut regions)?;
+        let needed: u64 = regions.iter().map(|r| u64::from(r.attempts)).sum();
+        let needed = u32::try_from(needed).unwrap_or(SATURATED).min(SATURATED);
+        // Whoever asks for more than it asked for before asks for ever: that is a result.
+        let is_whole = regions.iter().all(|r| r.attempts <= r.capacity);
+        if is_whole || !overflowed.is_empty() {
             break;
         }
-        let needed = u32::try_from(needed).unwrap_or(SATURATED).min(SATURATED);
-        if needed > capacity || !overflowed.is_empty() {
+        if needed > capacity {
             return Ok(Tried::Needs(needed));
         }
-        let stored = counted.iter().zip(&regions).map(|(seen, region)| Region {
-            attempts: seen.attempts,
-            ..*region
-        });
-        let stored: Vec<Region> = stored.collect();
-        overflowed.push((band, nodes::lists(&room, band, &stored)?));
+        overflowed.push((band, nodes::lists(&room, band, &regions)?));
         // Together they fit: each tile gets what it asked for.
-        regions = placed(counted.iter().map(|r| r.attempts));
+        regions = placed(regions.iter().map(|r| r.attempts));
     }
     let built = nodes::lists(&room, band, &regions)?;
     let mut linked = Linked {
@@ -153,7 +151,9 @@ fn of_band(
     if let Some(longest) = inspect(&result.built) {
         let (sort, most) = ([room.sort_linked()?], ("linked", dispatches(longest)));
         let progress = room.buffers.get("progress");
-        time += until_done(rasterizer.gpu, progress, most, || attempt::submit(&room, &sort))?;
+        time += until_done(rasterizer.gpu, progress, most, || {
+            attempt::submit(&room, &sort)
+        })?;
         result.sorted = Some(nodes::lists(&room, band, &regions)?);
         for pass in room.blend_linked(longest, u32::MAX)? {
             time += attempt::submit(&room, &[pass])?;
@@ -178,20 +178,26 @@ impl Room<'_, '_> {
         &mut self,
         drawn: (u32, u32),
     ) -> Result<(Vec<Region>, Vec<Ready>), GpuError> {
-        let gpu = self.rasterizer.gpu;
         let mut regions = placed((0..self.tiles).map(|_| 0));
         for _ in 0..2 {
+            regions = placed(regions.iter().map(|r| r.attempts));
             self.with_nodes(&regions)?;
             attempt::submit(self, &self.drawn("linked", 0, drawn)?)?;
-            let counted: Vec<Region> = gpu.read(self.buffers.get("regions"), regions.len())?;
-            regions = placed(counted.iter().map(|r| r.attempts));
-            regions.iter_mut().zip(&counted).for_each(|(region, seen)| {
-                region.attempts = seen.attempts;
-                region.in_order = seen.in_order;
-            });
+            self.count(&mut regions)?;
         }
         let passes = self.drawn("linked", 0, drawn)?;
         Ok((regions, passes))
+    }
+
+    /// Reads what each region counted. Where it lies and how large it is, the host knows.
+    fn count(&self, regions: &mut [Region]) -> Result<(), GpuError> {
+        let buffer = self.buffers.get("regions");
+        let counted: Vec<Region> = self.rasterizer.gpu.read(buffer, regions.len())?;
+        for (region, counted) in regions.iter_mut().zip(counted) {
+            region.attempts = counted.attempts;
+            region.in_order = counted.in_order;
+        }
+        Ok(())
     }
 
     /// Makes room for nodes.
@@ -199,9 +205,11 @@ impl Room<'_, '_> {
         let gpu = self.rasterizer.gpu;
         let pixels = u64::from(self.frame.width) * u64::from(self.frame.rows);
         let nodes = regions.last().map_or(0, |last| last.first + last.capacity);
-        self.buffers.set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
+        self.buffers
+            .set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
         self.buffers.set("heads", gpu.storage("heads", 4 * pixels)?);
-        self.buffers.set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
+        self.buffers
+            .set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
         self.buffers.set("regions", gpu.upload("regions", regions)?);
         Ok(())
     }

@@ -22,8 +22,8 @@ pub struct Local {
     pub digests: Vec<Digest>,
     /// The picture, row by row.
     pub image: Vec<[f32; 3]>,
-    /// Tiles that were left to lists in memory.
-    pub left: u32,
+    /// Of each band, which tiles were left to lists in memory.
+    pub left: Vec<(Band, Vec<bool>)>,
     /// Time on the device, without transfers and retries.
     pub time: Duration,
 }
@@ -49,7 +49,7 @@ impl Local {
     fn add(&mut self, part: Self) {
         self.digests.extend(part.digests);
         self.image.extend(part.image);
-        self.left += part.left;
+        self.left.extend(part.left);
         self.time += part.time;
     }
 }
@@ -123,7 +123,7 @@ fn of_band(
     Ok(Tried::Done(Box::new(Local {
         digests,
         image: attempt::picture(&room)?,
-        left,
+        left: vec![(band, finished.into_iter().map(|done| !done).collect())],
         time,
     })))
 }

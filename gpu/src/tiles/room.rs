@@ -152,7 +152,10 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Counts the triangles of each tile, and where its bin begins.
     pub(super) fn count_bins(&self) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(0);
-        let others = [("counts", &self.in_tiles), ("offsets", self.buffers.get("bins"))];
+        let others = [
+            ("counts", &self.in_tiles),
+            ("offsets", self.buffers.get("bins")),
+        ];
         let small = self.pass_with("bin_count", tiled, tiled.items.div_ceil(WORKGROUP), &others)?;
         let small = small.after_clearing(self.in_tiles.clone());
         let mut passes = vec![
@@ -166,7 +169,10 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Fills the bins, which have room for so many triangles, and puts them in order.
     pub(super) fn fill_bins(&self, binned: u32) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(binned);
-        let others = [("counts", &self.in_tiles), ("offsets", self.buffers.get("bins"))];
+        let others = [
+            ("counts", &self.in_tiles),
+            ("offsets", self.buffers.get("bins")),
+        ];
         Ok(vec![
             self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
             self.pass_with("bin_fill_large", tiled, tiled.groups, &others)?,

@@ -1,10 +1,11 @@
 //! A band drawn over and over, each part timed.
 
+use triptych_spec::abuffer::Lists;
 use triptych_spec::tiles::ROWS;
 
 use super::attempt::BINNED_MAX;
 use super::room::Room;
-use super::{Options, Region, attempt};
+use super::{Options, Region, attempt, nodes};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -93,7 +94,8 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(timed)
     }
 
-    /// The same with linked lists, in regions that hold just what is drawn.
+    /// The same with linked lists, in regions that hold just what is drawn. `inspect` says how long the
+    /// longest list is, or `None` if lists must not be followed; then there is nothing to time.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -101,15 +103,19 @@ impl<'r, 'g> Timed<'r, 'g> {
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
-    ) -> Result<Self, GpuError> {
+        inspect: impl Fn(&Lists) -> Option<u32>,
+    ) -> Result<Option<Self>, GpuError> {
         let (mut timed, drawn) = Self::bins(rasterizer, options)?;
         let room = &mut timed.room;
         let (regions, passes) = room.link_exactly(drawn)?;
-        timed.fragments = regions.iter().map(|r| r.attempts).sum();
+        // Whoever links them again links the same fragments, in the same regions.
+        let built = nodes::lists(room, Band::whole(rasterizer.size), &regions)?;
+        let Some(longest) = inspect(&built) else {
+            return Ok(None);
+        };
+        timed.fragments = built.attempts;
         timed.spans.push((Span::Fill, passes));
         timed.left = regions.iter().map(Region::unordered).sum();
-        // A list is no longer than its region.
-        let longest = regions.iter().map(|r| r.attempts).max().unwrap_or(0);
         if timed.left > 0 {
             timed
                 .spans
@@ -120,7 +126,7 @@ impl<'r, 'g> Timed<'r, 'g> {
                 .spans
                 .push((Span::Shade(*n), room.blend_linked(longest, *n)?));
         }
-        Ok(timed)
+        Ok(Some(timed))
     }
 
     /// A target with triangles in bins; the longest bin, and how many of it a dispatch draws.
@@ -142,7 +148,10 @@ impl<'r, 'g> Timed<'r, 'g> {
         attempt::fill_bins(&mut room, binned)?;
         let mut bin = room.count_bins()?;
         bin.extend(room.fill_bins(binned)?);
-        let drawn = (attempt::longest(&bins), attempt::at_once(options, rasterizer));
+        let drawn = (
+            attempt::longest(&bins),
+            attempt::at_once(options, rasterizer),
+        );
         let timed = Self {
             room,
             spans: vec![(Span::Bin, bin)],

@@ -89,7 +89,10 @@ fn shaded(text: &mut String, size: u32, has_samples: bool) -> std::fmt::Result {
 fn write_back(text: &mut String, size: u32) -> std::fmt::Result {
     for i in 0..size {
         let write = format!("listed[slot(run, {i}u)] = e{i}");
-        writeln!(text, "    if {i}u < run.length {{\n        {write};\n    }}")?;
+        writeln!(
+            text,
+            "    if {i}u < run.length {{\n        {write};\n    }}"
+        )?;
     }
     Ok(())
 }
@@ -130,25 +133,52 @@ fn comparisons(size: u32) -> Vec<(u32, u32)> {
 mod tests {
     use super::*;
 
+    /// Zeros and ones, as bits of the first entry on, put in order.
+    fn sorts(pairs: &[(u32, u32)], mut bits: u64, size: u32) -> bool {
+        let ones = bits.count_ones();
+        for (a, b) in pairs {
+            if bits >> a & 1 > bits >> b & 1 {
+                bits ^= 1 << a | 1 << b;
+            }
+        }
+        u128::from(bits) == ((1_u128 << ones) - 1) << (size - ones)
+    }
+
     /// A network sorts all if it sorts zeros and ones (Knuth, The Art of Computer Programming 3,
     /// section 5.3.4, theorem Z).
     #[test]
     fn networks_sort() {
+        for size in [8, 16] {
+            let pairs = comparisons(size);
+            assert!(
+                (0..1 << size).all(|bits| sorts(&pairs, bits, size)),
+                "{size}"
+            );
+        }
+    }
+
+    /// Of more entries, the halves are sorted as by the network of their size, and then merged, whatever
+    /// zeros and ones are in each.
+    #[test]
+    fn networks_merge_sorted_halves() {
+        for size in [16, 32, 64] {
+            let half = size / 2;
+            let (pairs, of_half) = (comparisons(size), comparisons(half));
+            let (halves, merge) = pairs.split_at(2 * of_half.len());
+            for first in [0, half] {
+                let own = halves.iter().filter(|(a, _)| a / half == first / half);
+                let own: Vec<(u32, u32)> = own.map(|(a, b)| (a - first, b - first)).collect();
+                assert_eq!(own, of_half, "{size}, from {first}");
+            }
+            let ones = |n: u32| ((1_u64 << n) - 1) << (half - n);
+            for (low, high) in (0..=half).flat_map(|low| (0..=half).map(move |high| (low, high))) {
+                let bits = ones(low) | ones(high) << half;
+                assert!(sorts(merge, bits, size), "{size}: {low}, {high} ones");
+            }
+        }
         assert_eq!(
             SIZES.map(|size| comparisons(size).len()),
             [19, 63, 191, 543]
         );
-        for size in [8, 16] {
-            for bits in 0..1_u32 << size {
-                let mut bits = bits;
-                for (a, b) in comparisons(size) {
-                    if bits >> a & 1 > bits >> b & 1 {
-                        bits ^= 1 << a | 1 << b;
-                    }
-                }
-                let ones = bits.count_ones();
-                assert_eq!(u64::from(bits), ((1_u64 << ones) - 1) << (size - ones));
-            }
-        }
     }
 }

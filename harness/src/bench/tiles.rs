@@ -48,12 +48,14 @@ impl<'r> ByTiles<'r> {
                 grid.sorted(label, band.band, lists)?;
             }
         }
-        let make = match method {
-            Method::Linked => Timed::linked,
-            Method::Local => Timed::local,
-            _ => Timed::new,
+        let shown = grid.shown();
+        let timed = match method {
+            Method::Linked => Timed::linked(rasterizer, &options, &shown, longest)?,
+            Method::Local => Some(Timed::local(rasterizer, &options, &shown)?),
+            _ => Some(Timed::new(rasterizer, &options, &shown)?),
         };
-        let timed = make(rasterizer, &options, &grid.shown())?;
+        let astray = || Refusal::Wrong(format!("{label}: links of tiles lead astray"));
+        let timed = timed.ok_or_else(astray)?;
         let (seen, must) = (u64::from(timed.fragments), grid.fragments());
         if seen != must && method != Method::Local {
             let words = format!("{label}: tiles count {seen} fragments, must be {must}");

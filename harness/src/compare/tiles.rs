@@ -147,3 +147,25 @@ mod tests {
         }
     }
 }
+
+/// The same stage: tiles that must do without lists in memory. One that was left to them all the same is
+/// `stale-pass`: what is shown of it comes from other passes.
+pub fn left(must: &[bool], left: &[bool]) -> Judgement {
+    let mut judgement = Judgement::new(Class::Exact, "tiles that need no lists");
+    if must.len() != left.len() {
+        judgement.differs(Cause::ReferenceMissing, None, || {
+            format!("{} tiles, must be {}", left.len(), must.len())
+        });
+        return judgement;
+    }
+    let all = must.iter().zip(left).enumerate();
+    for (tile, (_, left)) in all.filter(|(_, (must, _))| **must) {
+        judgement.compared += 1;
+        if *left {
+            judgement.differs(Cause::StalePass, None, || {
+                format!("tile {tile} was left to lists")
+            });
+        }
+    }
+    judgement
+}

@@ -2,11 +2,13 @@
 
 use triptych_gpu::abuffer::BandResult;
 use triptych_gpu::error::GpuError;
+use triptych_gpu::frame::Band;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::tiles::{self, Drawn, Linked, Local};
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::raster::Fragment;
-use triptych_spec::tiles::bin;
+use triptych_spec::tiles::{Bins, bin, needs_no_lists};
+use triptych_spec::vertex::Primitives;
 
 use wgpu::DeviceType;
 
@@ -14,6 +16,7 @@ use super::Extent;
 use super::gpu::{From, GpuLeg};
 use super::layouts::fragments;
 use super::rows::Rows;
+use crate::cause::Cause;
 use crate::compare::lists::compare_overflowed;
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
@@ -81,45 +84,90 @@ impl GpuLeg<'_> {
             capacity: self.capacity,
             drawn: tiles::DRAWN,
         };
-        let drawn = tiles::run(rasterizer, options)?;
-        let local = tiles::run_local(rasterizer, options)?;
-        let linked = tiles::run_linked(rasterizer, options, longest)?;
-        let seen = Observed::<observe::Gpu, _>::new(self.label(), drawn);
-        let skip = |stage, class, reason: &str, rows: &mut Rows| {
-            rows.skip(stage, &self.spec.label, &self.label(), class, reason.into());
+        let drawn = self.done("jagged", tiles::run(rasterizer, options), rows)?;
+        let local = self.done("local", tiles::run_local(rasterizer, options), rows)?;
+        let linked = tiles::run_linked(rasterizer, options, longest);
+        let linked = self.done("linked", linked, rows)?;
+        let because = match drawn {
+            None => Some("there are no lists, see jagged"),
+            Some(drawn) => self.judge_drawn(drawn, rows),
         };
-        let mut because = None;
-        if !self.judge_bins(&seen, rows) {
-            because = Some("the bins differ, see bin");
-            skip("jagged", Class::Structure, "the bins differ, see bin", rows);
-        } else if !self.judge_jagged(&seen, rows) {
-            because = Some("the lists differ, see jagged");
-        }
-        match because {
-            Some(reason) => {
-                skip("shade", Class::Interval, reason, rows);
-                skip("local", Class::Interval, reason, rows);
-                skip("linked", Class::Interval, reason, rows);
-            }
-            None => {
-                self.judge_shade(&seen, rows);
-                self.judge_local(local, rows);
-                self.judge_linked(linked, rows);
+        let Some(reason) = because else {
+            local
+                .into_iter()
+                .for_each(|local| self.judge_local(local, rows));
+            linked
+                .into_iter()
+                .for_each(|linked| self.judge_linked(linked, rows));
+            return Ok(());
+        };
+        for (stage, is_there) in [("local", local.is_some()), ("linked", linked.is_some())] {
+            if is_there {
+                self.skip(stage, Class::Interval, reason, rows);
             }
         }
         Ok(())
     }
 
+    fn skip(&self, stage: &'static str, class: Class, reason: &str, rows: &mut Rows) {
+        rows.skip(stage, &self.spec.label, &self.label(), class, reason.into());
+    }
+
+    /// What came of a stage; `None` if it was given up, which is a result.
+    ///
+    /// # Errors
+    /// What says nothing of it.
+    fn done<T>(
+        &self,
+        stage: &'static str,
+        tried: Result<T, GpuError>,
+        rows: &mut Rows,
+    ) -> Result<Option<T>, GpuError> {
+        let error = match tried {
+            Ok(done) => return Ok(Some(done)),
+            Err(error) => error,
+        };
+        let cause = match &error {
+            GpuError::Endless { .. } => Cause::Cycle,
+            GpuError::Limit { what, .. } if *what == stage => Cause::Overflow,
+            _ => return Err(error),
+        };
+        let (spec, label) = (&self.spec.label, self.label());
+        rows.fail(stage, spec, &label, Some(cause), error.to_string());
+        Ok(None)
+    }
+
+    /// Bins, lists and their picture; why stages that follow cannot be judged.
+    fn judge_drawn(&self, drawn: Drawn, rows: &mut Rows) -> Option<&'static str> {
+        let seen = Observed::<observe::Gpu, _>::new(self.label(), drawn);
+        let bins = "the bins differ, see bin";
+        let lists = "the lists differ, see jagged";
+        if !self.judge_bins(&seen, rows) {
+            self.skip("jagged", Class::Structure, bins, rows);
+            self.skip("shade", Class::Interval, bins, rows);
+            return Some(bins);
+        }
+        if !self.judge_jagged(&seen, rows) {
+            self.skip("shade", Class::Interval, lists, rows);
+            return Some(lists);
+        }
+        self.judge_shade(&seen, rows);
+        None
+    }
+
+    /// The spec's bins of a band.
+    fn bins(&self, primitives: &Primitives, band: &Band) -> Bins {
+        let rows = band.first..band.first + band.rows;
+        bin(primitives, rows, |prim| !self.spec.value.is_opaque(prim))
+    }
+
     /// Whether all bins are right: what follows from others says nothing of later stages.
     fn judge_bins(&self, seen: &Observed<observe::Gpu, Drawn>, rows: &mut Rows) -> bool {
-        let own = &self.spec.value;
-        let spec = self.spec.derive(&own.primitives);
+        let spec = self.spec.derive(&self.spec.value.primitives);
         let gpu = seen.map(|s| &s.bins).taking(seen.value.times.bin);
         let judgement = compare(&spec, &gpu, |primitives, bins| {
             Judgement::sum(bins.iter().map(|(band, offsets, prims)| {
-                let rows = band.first..band.first + band.rows;
-                let must = bin(primitives, rows, |prim| !own.is_opaque(prim));
-                compare::tiles::bins(&must, offsets, prims)
+                compare::tiles::bins(&self.bins(primitives, band), offsets, prims)
             }))
         });
         let agrees = judgement.differ() == 0;
@@ -175,6 +223,11 @@ impl GpuLeg<'_> {
             Judgement::sum([
                 compare::image::compare(&spec.image, &local.image, width),
                 compare::tiles::digests(&must, &local.digests, width),
+                Judgement::sum(local.left.iter().map(|(band, left)| {
+                    let bins = self.bins(&spec.primitives, band);
+                    let must = needs_no_lists(&bins, &spec.sorted, width);
+                    compare::tiles::left(&must, left)
+                })),
             ])
         });
         rows.add("local", &spec, &gpu, judgement);

@@ -65,7 +65,7 @@ pub(super) const LOCAL: Stage = Stage {
     contract: "A workgroup for each tile of tiled.items, of which it draws the whole bin, of at most \
         tiled.count triangles: blends the fragments of each pixel into `picture`, nearest first, and \
         writes how many they are and their digest to `digests`. A tile of which it cannot is left \
-        as it is, and digests.left counts it; of others the highest bit of bins[tile] is set.",
+        as it is, and digests.left counts it; of others the highest bit of the first pixel's count is set.",
 };
 
 /// Linked lists, a region for each tile.

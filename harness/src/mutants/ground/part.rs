@@ -7,6 +7,16 @@ use crate::registry::RIVALS;
 /// Files of the lists in other layouts.
 pub(super) const LAYOUTS: [&str; 4] = ["layouts", "packed", "regions", "ordered"];
 
+/// Files of the lists by tiles.
+const TILES: [&str; 6] = [
+    "tiles",
+    "tiles_samples",
+    "linked",
+    "linked_samples",
+    "local",
+    "local_samples",
+];
+
 /// What of a scene of triangles is compared.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Part {
@@ -29,7 +39,7 @@ pub(super) fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError
     }
     let lists = differ(sources, native, &["raster", "abuffer"])?.next();
     let rivals = differ(sources, native, &RIVALS)?.next();
-    let tiles = differ(sources, native, &["tiles", "linked", "local"])?.next();
+    let tiles = differ(sources, native, &TILES)?.next();
     let layouts = differ(sources, native, &LAYOUTS)?.next();
     Ok(match (lists, rivals, tiles, layouts) {
         (None, Some(_), ..) => Part::Rivals,
