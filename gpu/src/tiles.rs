@@ -101,7 +101,7 @@ pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Drawn, G
     let mut result = Drawn::default();
     let draw = |band, capacity| attempt::run(rasterizer, &options, band, capacity);
     let add = |part| result.add(part);
-    let need = room::need(rasterizer.samples.count());
+    let need = room::need(rasterizer);
     attempt::in_bands(rasterizer, need, options.capacity, draw, add)?;
     Ok(result)
 }

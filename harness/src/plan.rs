@@ -97,8 +97,7 @@ impl Plan {
             lists = decide(name, transparent > 0, why, "no transparent triangles");
         }
         decide("resolve", true, "the picture".into(), "");
-        let samples = scene.samples.count();
-        passes.extend(asked.passes(transparent, samples));
+        passes.extend(asked.passes(transparent, scene.samples.count()));
         passes.extend(by_tiles(transparent, scene, skip));
         passes.extend(layouts::passes(asked.rivals, transparent));
         let depth_test = skip && opaque > 0 && transparent > 0;
@@ -141,13 +140,12 @@ fn by_tiles(transparent: usize, scene: &Scene, skip: bool) -> impl Iterator<Item
         (_, 0, false) => format!("not needed ({none}), but nothing is skipped"),
         _ => format!("{transparent} transparent triangles"),
     };
-    ["bin", "jagged", "shade", "local", "linked"]
-        .into_iter()
-        .map(move |name| Pass {
-            name,
-            runs: !by_sample && (transparent > 0 || !skip),
-            reason: reason(),
-        })
+    let stages = ["bin", "jagged", "shade", "local", "linked"];
+    stages.into_iter().map(move |name| Pass {
+        name,
+        runs: !by_sample && (transparent > 0 || !skip),
+        reason: reason(),
+    })
 }
 
 /// Whether pixels whose samples are all alike are shaded once; `None` with one sample a pixel.

@@ -8,7 +8,7 @@ use triptych_spec::abuffer::Lists;
 use super::attempt::{self, Tried};
 use super::lists::STEPS;
 use super::nodes;
-use super::room::{Room, SAMPLE};
+use super::room::{COLOUR, Room, SAMPLE};
 use super::{Options, Tiled};
 use crate::abuffer::{BandResult, PROGRESS, dispatches};
 use crate::dispatch::Ready;
@@ -19,12 +19,14 @@ use crate::raster::{Need, Rasterizer, SATURATED};
 
 /// Of a sample: opaque surface, picture. Of a pixel: head, progress of sort and blend. Of a fragment: a
 /// node.
-fn need(samples: u32) -> Need {
+fn need(rasterizer: &Rasterizer<'_>) -> Need {
+    let samples = u64::from(rasterizer.samples.count());
+    let largest = (PROGRESS + 4).max(COLOUR * samples);
     Need {
         what: "linked",
-        pixel: SAMPLE * u64::from(samples) + 4 + PROGRESS,
+        pixel: SAMPLE * samples + 4 + PROGRESS,
         node: NODE,
-        pixels_max: u64::MAX,
+        pixels_max: rasterizer.gpu.binding_limit() / largest,
     }
 }
 
@@ -73,7 +75,7 @@ pub fn run(
     let mut result = Linked::default();
     let draw = |band, capacity| of_band(rasterizer, &options, (band, capacity), &inspect);
     let add = |part| result.add(part);
-    let need = need(rasterizer.samples.count());
+    let need = need(rasterizer);
     attempt::in_bands(rasterizer, need, options.capacity, draw, add)?;
     Ok(result)
 }

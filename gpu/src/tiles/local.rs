@@ -39,7 +39,7 @@ pub fn run(rasterizer: &Rasterizer<'_>, options: Options<'_>) -> Result<Local, G
     let mut result = Local::default();
     let draw = |band, capacity| of_band(rasterizer, &options, band, capacity);
     let add = |part| result.add(part);
-    let need = room::need(rasterizer.samples.count());
+    let need = room::need(rasterizer);
     attempt::in_bands(rasterizer, need, options.capacity, draw, add)?;
     Ok(result)
 }

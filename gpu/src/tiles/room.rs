@@ -1,6 +1,7 @@
 //! Buffers of a band that is drawn by tiles, and the passes over them.
 
 use bytemuck::{Pod, Zeroable};
+use triptych_spec::tiles::SIDE;
 
 use super::{Tiled, lists, tiles};
 use crate::dispatch::Ready;
@@ -21,17 +22,26 @@ const SHARED: u64 = 1 << 15;
 
 /// Of a sample: opaque surface, picture. Of a pixel: list, offset of a row, longest lists. Of a fragment:
 /// an entry, and one more while long lists are put in order.
-pub(super) fn need(samples: u32) -> Need {
+pub(super) fn need(rasterizer: &Rasterizer<'_>) -> Need {
+    let samples = u64::from(rasterizer.samples.count());
+    let binding = rasterizer.gpu.binding_limit();
+    // Lists are those of whole tiles.
+    let row = LIST * u64::from(rasterizer.size.width.next_multiple_of(SIDE));
+    let side = u64::from(SIDE);
+    let rows = binding / row / side * side;
     Need {
         what: "jagged",
-        pixel: SAMPLE * u64::from(samples) + LIST + 2 * 4,
+        pixel: SAMPLE * samples + LIST + 2 * 4,
         node: 16,
-        pixels_max: u64::MAX,
+        pixels_max: (binding / (COLOUR * samples)).min(rows * u64::from(rasterizer.size.width)),
     }
 }
 
+/// Bytes of a colour.
+pub(super) const COLOUR: u64 = 16;
+
 /// Bytes of a sample: what is opaque, and what is seen.
-pub(super) const SAMPLE: u64 = 2 * 4 + 16;
+pub(super) const SAMPLE: u64 = 2 * 4 + COLOUR;
 
 /// What is known of lists once they are placed. Twin: `Longest` in `jagged.wgsl`.
 #[repr(C)]
@@ -86,7 +96,10 @@ impl<'r, 'g> Room<'r, 'g> {
             ("unfinished", words("unfinished", 1)?),
             // Where all tiles have lists, there are no digests.
             ("digests", words("digests", 1 + 2)?),
-            ("picture", gpu.storage("picture", 16 * u64::from(samples))?),
+            (
+                "picture",
+                gpu.storage("picture", COLOUR * u64::from(samples))?,
+            ),
         ];
         Ok(Self {
             in_tiles: words("triangles of tiles", tiles)?,
