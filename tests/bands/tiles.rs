@@ -10,7 +10,7 @@ use super::*;
 /// Scenes, and adapters with room for some rows, and for fewer nodes than they need.
 const FEW: [(&str, Small); 2] = [
     ("abuffer/quads", |gpu| gpu.restrict_memory(60_000)),
-    ("abuffer/msaa-thirds", |gpu| gpu.restrict_bindings(40_000)),
+    ("abuffer/msaa-thirds", |gpu| gpu.restrict_bindings(80_000)),
 ];
 
 /// Whether a band begins within a tile of the whole target.
@@ -53,8 +53,9 @@ fn tiles_and_layouts_have_the_same_lists_and_pictures_in_bands() {
             assert!(is_split(&leg), "{words}: no band begins within a tile");
             let mut rows = Rows::new(name, "abuffer");
             tiles::run(&leg, Extent::All, &mut rows).expect("it runs");
-            // Arrays are put in order in bands that fit a binding, however much memory there is.
-            let with_layouts = name != "abuffer/quads";
+            // Arrays are put in order in bands that fit a binding, however much memory there is. SwiftShader
+            // takes its time over layouts: what is tried here is the host's.
+            let with_layouts = name != "abuffer/quads" && adapter.native.is_some();
             if with_layouts {
                 layouts::run(&leg, Extent::All, &mut rows).expect("it runs");
             }
