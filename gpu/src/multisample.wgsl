@@ -6,6 +6,7 @@
 // which the samples of a pixel follow each other; the mean replaces the first.
 
 //#import abuffer
+//#import mean
 
 // A dispatch follows a list for so many nodes: an inner loop has all samples of each.
 const NODES: u32 = STEPS / SAMPLES_MAX;
@@ -32,18 +33,6 @@ fn shows(node: Node, pixel: u32, s: u32) -> bool {
 
 fn over(seen: vec4<f32>, layer: vec4<f32>) -> vec4<f32> {
     return vec4(seen.rgb + seen.a * layer.a * layer.rgb, seen.a * (1.0 - layer.a));
-}
-
-// The mean of all samples: by halves, so that the mean of equal colours is that colour, and
-// by a power of two from its bits, as WGSL's quotients may be off.
-fn mean(colours: ptr<function, array<vec3<f32>, SAMPLES_MAX>>) -> vec4<f32> {
-    for (var half = 1u; half < frame.samples; half *= 2u) {
-        for (var s = 0u; s < frame.samples; s += 2u * half) {
-            (*colours)[s] += (*colours)[s + half];
-        }
-    }
-    let share = bitcast<f32>((127u - firstTrailingBit(frame.samples)) << 23u);
-    return vec4(share * (*colours)[0], 1.0);
 }
 
 // Stage resolve by pixel. As long as all layers cover all samples, these are alike and one

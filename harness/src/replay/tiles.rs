@@ -1,5 +1,7 @@
 //! The same lists by tiles: bins, lists as they lie side by side, picture.
 
+mod nearest;
+
 use triptych_gpu::abuffer::BandResult;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
@@ -105,6 +107,7 @@ impl GpuLeg<'_> {
                 self.judge_shade(&seen, rows);
                 self.judge_local(local, rows);
                 self.judge_linked(linked, rows);
+                self.judge_nearest(rasterizer, options, rows)?;
             }
         }
         Ok(())
