@@ -166,7 +166,8 @@ impl Built {
         self.again.extend(part.again);
         self.overflowed.extend(part.overflowed);
         self.image.extend(part.image);
-        self.nearest.resize(self.nearest.len().max(part.nearest.len()), Vec::new());
+        self.nearest
+            .resize(self.nearest.len().max(part.nearest.len()), Vec::new());
         for (all, band) in self.nearest.iter_mut().zip(part.nearest) {
             all.extend(band);
         }

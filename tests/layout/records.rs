@@ -4,9 +4,9 @@ use std::mem::{offset_of, size_of};
 
 use naga::{Module, TypeInner};
 use triptych_gpu::abuffer::PROGRESS;
+use triptych_gpu::abuffer::rivals::Reducing;
 use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
-use triptych_gpu::abuffer::rivals::Reducing;
 use triptych_gpu::layouts::Listing;
 use triptych_gpu::ldm::Told;
 use triptych_gpu::rsm::{Parameters, View};

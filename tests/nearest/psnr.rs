@@ -42,7 +42,11 @@ impl Pictures {
     /// Of a scene that is loaded; `None` if it has no transparent layers, or too many.
     fn of(loaded: Loaded) -> Option<Self> {
         let Loaded { scene, .. } = loaded;
-        if scene.triangles.iter().all(triptych_spec::scene::Triangle::is_opaque) {
+        if scene
+            .triangles
+            .iter()
+            .all(triptych_spec::scene::Triangle::is_opaque)
+        {
             return None;
         }
         let primitives = primitives(&scene, 8);
@@ -130,7 +134,10 @@ fn holds(entry: &Entry, pictures: &Pictures) {
                 let error = (some[c].value - all[c].value).abs();
                 // Sums in another order round by less than the bounds of an `f32`.
                 let off = some[c].bound + all[c].bound;
-                assert!(error <= most[c] + off, "{name}, {n} layers, pixel {pixel}: {error} {most:?}");
+                assert!(
+                    error <= most[c] + off,
+                    "{name}, {n} layers, pixel {pixel}: {error} {most:?}"
+                );
             }
         }
     }
@@ -162,17 +169,30 @@ fn more_layers_are_nearer_to_all() {
     std::thread::scope(|scope| {
         let other = scope.spawn(work);
         work();
-        other.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
+        other
+            .join()
+            .unwrap_or_else(|e| std::panic::resume_unwind(e));
     });
     let seen = seen.into_inner().expect("nobody failed");
-    assert!(seen.len() > 30, "{} scenes are not the corpus: {seen:?}", seen.len());
+    assert!(
+        seen.len() > 30,
+        "{} scenes are not the corpus: {seen:?}",
+        seen.len()
+    );
 }
 
 /// A white layer and a black one over grey: none at all is what both are, and one is not.
 #[test]
 fn fewer_may_be_nearer() {
     let colours = [[1.0, 1.0, 1.0, 0.25], [0.0, 0.0, 0.0, 1.0 / 3.0]];
-    let corners = [[0, 0, 1], [512, 0, 1], [0, 512, 1], [0, 0, 2], [512, 0, 2], [0, 512, 2]];
+    let corners = [
+        [0, 0, 1],
+        [512, 0, 1],
+        [0, 512, 1],
+        [0, 0, 2],
+        [512, 0, 2],
+        [0, 512, 2],
+    ];
     let primitives = Primitives {
         size: Size {
             width: 1,

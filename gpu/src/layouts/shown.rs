@@ -115,7 +115,9 @@ impl Room<'_, '_> {
         let groups = self.pixels().div_ceil(WORKGROUP);
         let clear = self.pass_of("nearest", "clear_progress", self.listing, groups)?;
         let again = (0..dispatches(longest)).map(|_| pass());
-        std::iter::once(Ok(Step::Other(clear))).chain(again).collect()
+        std::iter::once(Ok(Step::Other(clear)))
+            .chain(again)
+            .collect()
     }
 
     /// Puts lists of at most `longest` entries in order, of `all` in memory.
@@ -127,7 +129,10 @@ impl Room<'_, '_> {
             Layout::Regions => ("abuffer", "sort"),
         };
         let groups = self.pixels().div_ceil(WORKGROUP);
-        let pass = || self.pass_of(file, entry, self.listing, groups).map(Step::Other);
+        let pass = || {
+            self.pass_of(file, entry, self.listing, groups)
+                .map(Step::Other)
+        };
         self.until_done(longest, pass)
     }
 

@@ -97,10 +97,7 @@ impl<'r, 'g> Timed<'r, 'g> {
         };
         let lists = (self.longest, all);
         let rank = room.order(self.longest, all)?;
-        let mut parts = vec![
-            (Span::Rank, rank),
-            (Span::Blend, room.blend(self.longest)?),
-        ];
+        let mut parts = vec![(Span::Rank, rank), (Span::Blend, room.blend(self.longest)?)];
         for n in nearest {
             parts.push((Span::Nearest(*n), room.nearest(*n, lists)?));
         }
@@ -211,7 +208,8 @@ fn read(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     match room.layout {
         Layout::Bucket => bucket::lists(room),
         Layout::Precalc => {
-            let offsets: Vec<u32> = gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
+            let offsets: Vec<u32> =
+                gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
             precalc::linked(room, &offsets, room.frame.capacity)
         }
         Layout::Packed => packed::lists(room),

@@ -17,7 +17,9 @@ pub fn nearest_of(sorted: &Sorted, n: u32) -> Sorted {
     };
     for pixel in 0..sorted.offsets.len() - 1 {
         let list = sorted.list(pixel);
-        nearest.fragments.extend(&list[..list.len().min(n as usize)]);
+        nearest
+            .fragments
+            .extend(&list[..list.len().min(n as usize)]);
         let end = u32::try_from(nearest.fragments.len()).expect("fewer than 2^32 fragments");
         nearest.offsets.push(end);
     }

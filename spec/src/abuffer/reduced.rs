@@ -107,7 +107,9 @@ pub fn reduced(
     (reduction, upsampling): (Reduction, Upsampling),
 ) -> Vec<[Bounded; 3]> {
     let low = lists.primitives.size;
-    let layers: Vec<[Bounded; 4]> = (0..low.pixels()).map(|q| blended(scene, lists, q)).collect();
+    let layers: Vec<[Bounded; 4]> = (0..low.pixels())
+        .map(|q| blended(scene, lists, q))
+        .collect();
     let width = primitives.size.width as usize;
     let pixel = |pixel: usize| {
         let [x, y] = [pixel % width, pixel / width];

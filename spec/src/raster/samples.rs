@@ -104,9 +104,7 @@ impl Samples {
     /// Where sample `s` of a pixel lies, in sub-pixels.
     pub fn point(&self, s: u32, [column, row]: [u32; 2], bits: u32) -> [i64; 2] {
         let at = self.at[s as usize];
-        let place = |pixel: u32, at: u8| {
-            (i64::from(pixel) << bits) + sub_pixels(at, bits)
-        };
+        let place = |pixel: u32, at: u8| (i64::from(pixel) << bits) + sub_pixels(at, bits);
         [place(column, at[0]), place(row, at[1])]
     }
 

@@ -53,7 +53,7 @@ pub fn reduce(
     let gpu = full.gpu;
     full.take_passes();
     low.rasterizer.take_passes();
-    let (whole, part) = (Band::whole(full.size), Band::whole(low.rasterizer.size));
+    let whole = Band::whole(full.size);
     let pixels = u64::from(whole.pixels(full.size));
     if pixels > PIXELS_MAX {
         return Err(GpuError::Limit {
@@ -63,70 +63,88 @@ pub fn reduce(
             limit: PIXELS_MAX,
         });
     }
-    let words = [Reducing {
+    let words = Reducing {
         halvings: reduction.halvings,
         across: low.rasterizer.size.width,
         down: low.rasterizer.size.height,
         falloff: reduction.falloff,
-    }];
-    let few = u64::from(part.pixels(low.rasterizer.size));
-    let node = |n: &triptych_spec::abuffer::Node| [n.key, n.next, n.prim, n.mask];
-    let nodes: Vec<[u32; 4]> = low.lists.nodes.iter().map(node).collect();
-    let layers = gpu.storage("reduced_layer", 16 * few)?;
+    };
+    let blended = blend(low, given)?;
     let guide = gpu.upload("guide", &low.opaque.key)?;
     let reducing = gpu.uniform("reduction", &words)?;
+    let shown = gpu.storage("picture", 16 * pixels)?;
+    let surfaces = Surfaces::upload(full, given.opaque, whole)?;
+    let mut named = vec![
+        ("picture", &shown),
+        ("reduced_layer", &blended.layers),
+        ("guide", &guide),
+        ("reduction", &reducing),
+    ];
+    named.extend(surfaces.named());
+    let above = frame(full, whole, given.background);
+    let below = low.rasterizer.take_passes();
+    let show = |stage| -> Result<Rival, GpuError> {
+        let pass = full.ready_per_pixel("reduced", stage, above, &named)?;
+        let time = submit(full, std::slice::from_ref(&pass), None)?;
+        let mut passes = below.clone();
+        passes.extend(full.take_passes());
+        Ok(Rival {
+            image: image(gpu, &shown, whole.pixels(full.size))?,
+            time: blended.time + time,
+            passes,
+            bytes: blended.bytes + guide.size() + shown.size(),
+            layers: low.layers,
+            ..Rival::default()
+        })
+    };
+    Ok([show("reduced_nearest")?, show("reduced")?])
+}
+
+/// A reduced target's layers.
+struct Blended {
+    /// Of each pixel their colour, and what goes through.
+    layers: wgpu::Buffer,
+    /// Of these and of the lists.
+    bytes: u64,
+    time: Duration,
+}
+
+/// Blends the lists of a reduced target, without what lies behind.
+fn blend(low: Low<'_, '_>, given: Given<'_>) -> Result<Blended, GpuError> {
+    let (rasterizer, gpu) = (low.rasterizer, low.rasterizer.gpu);
+    let band = Band::whole(rasterizer.size);
+    let pixels = u64::from(band.pixels(rasterizer.size));
+    let node = |n: &triptych_spec::abuffer::Node| [n.key, n.next, n.prim, n.mask];
+    let nodes: Vec<[u32; 4]> = low.lists.nodes.iter().map(node).collect();
     let own = [
+        ("picture", gpu.storage("reduced_layer", 16 * pixels)?),
+        ("unfinished", gpu.storage("unfinished", 4)?),
         ("heads", gpu.upload("heads", &low.lists.heads)?),
         ("nodes", gpu.upload("nodes", &nodes)?),
-        ("cursors", gpu.storage("cursors", 4 * few)?),
-        ("unfinished", gpu.storage("unfinished", 4)?),
+        ("cursors", gpu.storage("cursors", 4 * pixels)?),
     ];
-    let shown = gpu.storage("picture", 16 * pixels)?;
-    let surfaces = Surfaces::upload(low.rasterizer, low.opaque, part)?;
+    let surfaces = Surfaces::upload(rasterizer, low.opaque, band)?;
     let mut named: Vec<_> = own.iter().map(|(name, buffer)| (*name, buffer)).collect();
-    named.push(("picture", &layers));
     named.extend(surfaces.named());
-    let below = frame(low.rasterizer, part, given.background);
-    let of_low = |stage| low.rasterizer.ready_per_pixel("reduced", stage, below, &named);
-    let mut passes = vec![of_low("reduced_clear")?];
+    let frame = frame(rasterizer, band, given.background);
+    let ready = |stage| rasterizer.ready_per_pixel("reduced", stage, frame, &named);
+    let mut passes = vec![ready("reduced_clear")?];
     for _ in 0..=u64::from(low.layers) / STEPS {
-        passes.push(of_low("reduced_layers")?);
+        passes.push(ready("reduced_layers")?);
     }
-    let unfinished = &own[3].1;
-    let blending = submit(low.rasterizer, &passes, Some(unfinished))?;
+    let [(_, layers), (_, unfinished), ..] = &own;
+    let time = submit(rasterizer, &passes, Some(unfinished))?;
     if gpu.word(unfinished, 0)? != 0 {
         return Err(GpuError::Endless {
             adapter: gpu.name.clone(),
             stage: "reduced",
         });
     }
-    let surfaces = Surfaces::upload(full, given.opaque, whole)?;
-    let mut named = vec![
-        ("picture", &shown),
-        ("reduced_layer", &layers),
-        ("guide", &guide),
-        ("reduction", &reducing),
-    ];
-    named.extend(surfaces.named());
-    let above = frame(full, whole, given.background);
-    let bytes = own.iter().map(|(_, buffer)| buffer.size()).sum::<u64>();
-    let bytes = bytes + layers.size() + guide.size() + shown.size();
-    let below = low.rasterizer.take_passes();
-    let show = |stage| -> Result<Rival, GpuError> {
-        let pass = full.ready_per_pixel("reduced", stage, above, &named)?;
-        let time = submit(full, std::slice::from_ref(&pass), None)?;
-        let mut all = below.clone();
-        all.extend(full.take_passes());
-        Ok(Rival {
-            image: image(gpu, &shown, whole.pixels(full.size))?,
-            time: blending + time,
-            passes: all,
-            bytes,
-            layers: low.layers,
-            ..Rival::default()
-        })
-    };
-    Ok([show("reduced_nearest")?, show("reduced")?])
+    Ok(Blended {
+        layers: layers.clone(),
+        bytes: own.iter().map(|(_, buffer)| buffer.size()).sum(),
+        time,
+    })
 }
 
 /// Runs passes; what needs another dispatch says so in the last.

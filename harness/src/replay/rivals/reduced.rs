@@ -88,8 +88,13 @@ impl GpuLeg<'_> {
             Path::Fragment => Path::Compute,
             path => path,
         };
-        let Adapter { kernels, native, .. } = self.adapter;
-        let kernels = native.as_ref().filter(|_| path == Path::Native).unwrap_or(kernels);
+        let Adapter {
+            kernels, native, ..
+        } = self.adapter;
+        let kernels = native
+            .as_ref()
+            .filter(|_| path == Path::Native)
+            .unwrap_or(kernels);
         let (gpu, faces) = (&self.adapter.gpu, &spec.faces);
         let low = Rasterizer::new(gpu, kernels, path, &must.lists.primitives, faces)?;
         if self.path == path && !self.judge_reduced_lists(stage, must, &low, rows)? {
@@ -100,7 +105,13 @@ impl GpuLeg<'_> {
             background: self.scene.background,
         };
         let lists = relinked(&must.lists.sorted, faces);
-        let longest = must.lists.sorted.offsets.windows(2).map(|run| run[1] - run[0]).max();
+        let longest = must
+            .lists
+            .sorted
+            .offsets
+            .windows(2)
+            .map(|run| run[1] - run[0])
+            .max();
         let low = Low {
             rasterizer: &low,
             opaque: &must.lists.opaque,
@@ -137,7 +148,10 @@ impl GpuLeg<'_> {
         let built = abuffer::run(low, options, |prim| spec.is_opaque(prim), inspect)?;
         let time = built.times.opaque + built.times.build + built.times.sort;
         let seen = Observed::<Gpu, Abuffer>::new(self.label(), built).taking(time);
-        let own = self.spec.derive(&must.lists).taking(must.pictures[0].1.time);
+        let own = self
+            .spec
+            .derive(&must.lists)
+            .taking(must.pictures[0].1.time);
         let mut judgement = compare(&own, &seen, |must, seen| {
             let width = must.primitives.size.width;
             let surfaces = compare::opaque::compare(&must.opaque, &seen.opaque, &must.primitives);

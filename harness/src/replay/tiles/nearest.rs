@@ -11,11 +11,8 @@ use crate::observe::{self, Observed};
 use crate::row::Class;
 
 /// Sets up a whole target, and pictures of these numbers of layers.
-type SetUp = for<'r, 'g> fn(
-    &'r Rasterizer<'g>,
-    &Options<'_>,
-    &[u32],
-) -> Result<Timed<'r, 'g>, GpuError>;
+type SetUp =
+    for<'r, 'g> fn(&'r Rasterizer<'g>, &Options<'_>, &[u32]) -> Result<Timed<'r, 'g>, GpuError>;
 
 /// The stages, and how each is set up.
 const STAGES: [(&str, SetUp); 3] = [
@@ -40,9 +37,8 @@ impl GpuLeg<'_> {
         let width = self.scene.size.width;
         for (stage, set_up) in STAGES {
             let mut pictures = Vec::new();
-            let made = set_up(rasterizer, &options, &[must.layers]).and_then(|timed| {
-                timed.pictures(|_, picture| pictures.push(picture))
-            });
+            let made = set_up(rasterizer, &options, &[must.layers])
+                .and_then(|timed| timed.pictures(|_, picture| pictures.push(picture)));
             match made {
                 // Bands are for the picture of all layers.
                 Err(error @ (GpuError::Limit { .. } | GpuError::Memory { .. })) => {

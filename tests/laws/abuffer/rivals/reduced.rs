@@ -32,7 +32,12 @@ fn quads(width: u32, quads: &[([i32; 2], i32, [f32; 4])]) -> Layers {
     let mut colours = Vec::new();
     for (at, &([left, right], key, colour)) in (0..).zip(quads) {
         let [left, right, bottom] = [left, right, 16].map(|p| p << 8);
-        snapped.extend([[left, 0, key], [right, 0, key], [right, bottom, key], [left, bottom, key]]);
+        snapped.extend([
+            [left, 0, key],
+            [right, 0, key],
+            [right, bottom, key],
+            [left, bottom, key],
+        ]);
         let corner = |i: u32| 4 * at + i;
         prims.extend([[0, 1, 2], [0, 2, 3]].map(|p| p.map(corner)));
         colours.extend([colour; 2]);
@@ -147,12 +152,24 @@ fn depth_keeps_layers_to_their_surfaces() {
             };
             let seen = layers.reduced(reduction, upsampling);
             let apart = must.iter().flatten().zip(seen.iter().flatten());
-            apart.map(|(a, b)| (a.value - b.value).abs()).fold(0.0, f64::max)
+            apart
+                .map(|(a, b)| (a.value - b.value).abs())
+                .fold(0.0, f64::max)
         };
         // From the wall to where nothing is, most of the depth range.
-        let most = 64.0 / (1.0 + f64::from(falloff) * (1.0 - f64::from(near) / f64::from(1_u32 << 31)));
-        assert!(far(Upsampling::Joint) <= most, "{end}: {} {most}", far(Upsampling::Joint));
+        let most =
+            64.0 / (1.0 + f64::from(falloff) * (1.0 - f64::from(near) / f64::from(1_u32 << 31)));
+        assert!(
+            far(Upsampling::Joint) <= most,
+            "{end}: {} {most}",
+            far(Upsampling::Joint)
+        );
         let leaks = end % 4 != 0;
-        assert_eq!(far(Upsampling::Nearest) > 0.1, leaks, "{end}: {}", far(Upsampling::Nearest));
+        assert_eq!(
+            far(Upsampling::Nearest) > 0.1,
+            leaks,
+            "{end}: {}",
+            far(Upsampling::Nearest)
+        );
     }
 }
