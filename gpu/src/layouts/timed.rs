@@ -120,26 +120,37 @@ impl<'r, 'g> Timed<'r, 'g> {
         self.room.submit(&self.spans[span].1).map(drop)
     }
 
-    /// Runs every part once, one after another; the lists in order, the picture, and pictures of the nearest
-    /// layers alone.
+    /// Runs every part of the frame of all layers once, one after another; the lists in order, and the picture.
     ///
     /// # Errors
     /// Whatever the device reports.
-    pub fn frame(&self) -> Result<(Lists, Vec<[f32; 3]>, Vec<Vec<[f32; 3]>>), GpuError> {
-        let blend = self.spans().position(|span| span == Span::Blend);
-        let blend = blend.expect("every layout has a picture");
+    pub fn frame(&self) -> Result<(Lists, Vec<[f32; 3]>), GpuError> {
+        let blend = self.blend();
         for span in 0..blend {
             self.run(span)?;
         }
         let lists = read(&self.room)?;
         self.run(blend)?;
-        let picture = self.room.picture()?;
-        let mut nearest = Vec::new();
-        for span in blend + 1..self.spans.len() {
+        Ok((lists, self.room.picture()?))
+    }
+
+    /// Runs the frames of [`Options::nearest`] layers alone, after [`Self::frame`]; their pictures.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn nearest(&self) -> Result<Vec<Vec<[f32; 3]>>, GpuError> {
+        let mut pictures = Vec::new();
+        for span in self.blend() + 1..self.spans.len() {
             self.run(span)?;
-            nearest.push(self.room.picture()?);
+            pictures.push(self.room.picture()?);
         }
-        Ok((lists, picture, nearest))
+        Ok(pictures)
+    }
+
+    /// The part that makes the picture of all layers.
+    fn blend(&self) -> usize {
+        let blend = self.spans().position(|span| span == Span::Blend);
+        blend.expect("every layout has a picture")
     }
 
     /// Runs every part once, and gives the seconds of each.

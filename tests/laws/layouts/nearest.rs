@@ -195,7 +195,8 @@ fn every_layout_shows_the_nearest() {
             if arrays.is_none() && layers.primitives.samples.count() == 1 {
                 let timed = Timed::new(rasterizer, layout, options, is_opaque, inspect);
                 let timed = timed.unwrap_or_else(|e| panic!("{words}: {e}"));
-                let (_, image, nearest) = timed.frame().unwrap_or_else(|e| panic!("{words}: {e}"));
+                let (_, image) = timed.frame().unwrap_or_else(|e| panic!("{words}: {e}"));
+                let nearest = timed.nearest().unwrap_or_else(|e| panic!("{words}: {e}"));
                 assert!(
                     image == built.image && nearest == built.nearest,
                     "{words}, timed"
