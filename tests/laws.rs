@@ -20,6 +20,7 @@
 //! | `layouts` | arrays, runs, regions and ordered lists hold what lists of `abuffer` hold; what is full says so |
 //! | `layouts::colours` | however channels are rounded to bytes, pictures stay inside the bounds |
 //! | `layouts::adapters` | ranges of depth; long lists; room, on every adapter |
+//! | `layouts::nearest` | the nearest layers alone, never the first, in every layout and by tiles, on every adapter |
 //! | `grid::rays` | brute force; reversal, parts, translation, splits, resolution; exact arithmetic |
 //! | `grid::cells` | which cells list a triangle; linked lists; bricks; boundaries; limits |
 //! | `grid::kernel` | no arithmetic that WGSL allows leads past what a ray meets |

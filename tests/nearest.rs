@@ -2,6 +2,9 @@
 //! spec's picture, from unsorted lists and from sorted ones; and kernels with a defect
 //! are not.
 
+#[path = "nearest/psnr.rs"]
+mod psnr;
+
 use std::path::Path as FilePath;
 
 use triptych_gpu::abuffer::{Options, Part, Timed, can_keep, with_layers};
@@ -206,38 +209,4 @@ fn lists_are_walked_only_where_the_steps_suffice() {
     assert!(can_keep(64, 120), "the insertions of all but a few");
     assert!(!can_keep(64, 4096), "64 moves a node");
     assert!(!can_keep(65, 65), "no room");
-}
-
-/// The more of the nearest layers are shown, the nearer the picture is to that of all: the mean
-/// square of the error never rises with their number, on any scene.
-#[test]
-fn more_layers_are_nearer_to_all() {
-    const FRAGMENTS: usize = 1 << 18;
-    let entries = corpus::list(&corpus::root()).expect("the corpus can be read");
-    let mut seen = 0;
-    for entry in entries.iter().filter(|e| e.family == "abuffer") {
-        let Ok(loaded) = load_entry(entry, None) else {
-            continue;
-        };
-        let (scene, prims) = (&loaded.scene, primitives(&loaded.scene, 8));
-        let run = SpecRun::new(scene, prims, &Plan::new(scene, true));
-        let run = run.unwrap_or_else(|e| panic!("{}: {e}", entry.name));
-        if run.lists.nodes.is_empty() || run.lists.nodes.len() > FRAGMENTS {
-            continue;
-        }
-        let error = |n: u32| {
-            let kept = nearest_layers(&run.lists, n);
-            let some = resolve(scene, &run.primitives, &run.opaque, &kept);
-            let pairs = some.iter().flatten().zip(run.image.iter().flatten());
-            pairs.map(|(a, b)| (a.value - b.value).powi(2)).sum::<f64>()
-        };
-        let errors: Vec<f64> = [0, 2, 4, 8, 16, 32, 64].map(error).to_vec();
-        // The nearest may be invisible.
-        let falls = errors.windows(2).all(|pair| pair[1] <= pair[0]);
-        assert!(falls, "{}: {errors:?}", entry.name);
-        let gone = errors[0] == 0.0 || errors[6] < errors[0];
-        assert!(gone, "{}: {errors:?}", entry.name);
-        seen += 1;
-    }
-    assert!(seen > 15, "{seen} scenes are not the corpus");
 }

@@ -118,7 +118,8 @@ impl Frame {
         let mut places = [0; 8];
         for (word, [right, down]) in places.iter_mut().zip(samples.offsets(bits)) {
             let packed = right | down << 16;
-            *word = u32::try_from(packed).expect("less than a pixel, which has 2^8 sub-pixels");
+            *word = u32::try_from(packed)
+                .expect("less than a pixel, which has at most 2^10 sub-pixels");
         }
         Self {
             width: size.width,

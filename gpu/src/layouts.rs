@@ -9,8 +9,10 @@ pub mod memory;
 mod ordered;
 mod packed;
 mod precalc;
+mod ranges;
 mod regions;
 mod room;
+mod shown;
 mod timed;
 
 use std::time::Duration;
@@ -24,8 +26,8 @@ use crate::error::GpuError;
 use crate::frame::Band;
 use crate::pass::Pass;
 use crate::raster::{Attempts, Need, Rasterizer};
-pub use arrays::{BEGINS, ENDS};
 pub use ordered::is_wide;
+pub use shown::{BEGINS, ENDS, FOLLOWS, GOES_ON, SAMPLED};
 pub use timed::{Span, Timed};
 
 /// Entries of a pixel's array in the first attempt.
@@ -105,8 +107,12 @@ pub struct Listing {
     pub until_face: u32,
     /// Heads of lists, before the links of nodes.
     pub links: u32,
-    /// Nothing.
-    pub unused: u32,
+    /// Layers of each list that are shown, the nearest ones.
+    pub layers: u32,
+    /// The first sample of each pixel in a dispatch that blends several,
+    pub sample: u32,
+    /// and how many.
+    pub samples: u32,
 }
 
 /// What to draw, and how.
@@ -124,6 +130,8 @@ pub struct Options<'a> {
     /// Most entries of each pixel's array, at least 1; `None`: as many as can be had. Longer lists are
     /// drawn in several ranges of depth.
     pub arrays: Option<u32>,
+    /// Numbers of the nearest layers that are shown alone, each in a frame of its own after that of all.
+    pub nearest: &'a [u32],
 }
 
 /// What came of a layout.
@@ -135,8 +143,11 @@ pub struct Built {
     pub again: Vec<(Band, Lists)>,
     /// First attempts that did not fit, in order: the band, and what was stored.
     pub overflowed: Vec<(Band, Lists)>,
-    /// The picture, row by row; empty where pixels have several samples.
+    /// The picture, row by row, blended in the order of the lists: the mean of several samples.
     pub image: Vec<[f32; 3]>,
+    /// The same of so many nearest layers alone as [`Options::nearest`] says; none where lists must not be
+    /// followed.
+    pub nearest: Vec<Vec<[f32; 3]>>,
     /// Time of the stage that builds, without transfers and retries.
     pub build: Duration,
     /// Time of what orders and blends.
@@ -155,6 +166,11 @@ impl Built {
         self.again.extend(part.again);
         self.overflowed.extend(part.overflowed);
         self.image.extend(part.image);
+        self.nearest
+            .resize(self.nearest.len().max(part.nearest.len()), Vec::new());
+        for (all, band) in self.nearest.iter_mut().zip(part.nearest) {
+            all.extend(band);
+        }
         self.build += part.build;
         self.finish += part.finish;
         self.ranges = self.ranges.max(part.ranges);

@@ -202,9 +202,18 @@ fn rank_merge(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgro
     }
 }
 
-// What a dispatch does beside: it begins with nothing, or ends with what lies behind.
-const BEGINS: u32 = 1u;
-const ENDS: u32 = 2u;
+// Entries of a list that a dispatch shows, at most `most` from listing.first on: first and end. Arrays have no
+// use for offsets, which then count the layers that passes over nearer ranges of depth have shown.
+fn shown_entries(pixel: u32, count: u32, most: u32) -> vec2<u32> {
+    var left = listing.layers;
+    if (listing.flags & FOLLOWS) != 0u {
+        left -= min(left, offsets[pixel]);
+    }
+    if (listing.flags & GOES_ON) != 0u {
+        offsets[pixel] = plus(listing.layers - left, count);
+    }
+    return vec2(listing.first, min(min(count, left), listing.first + most));
+}
 
 // The layers of a pixel from listing.first on, under those before. Entries at or behind the opaque
 // surface are not seen.
@@ -219,7 +228,8 @@ fn rank_blend(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let own = entries_of(id.x);
     let end = opaque_key[id.x];
-    for (var i = listing.first; i < min(own.y, listing.first + STEPS); i += 1u) {
+    let shown = shown_entries(id.x, own.y, STEPS);
+    for (var i = shown.x; i < shown.y; i += 1u) {
         let entry = listed[own.x + i];
         if entry.x >= end {
             break;

@@ -1,3 +1,29 @@
-// The kernels of layouts.wgsl for pixels with several samples on the fragment path.
+// The kernels of layouts.wgsl for pixels with several samples on the fragment path, and its picture of such
+// pixels on every path.
 //#import drawn_samples for drawn
 //#import layouts
+//#import sampled
+
+// As rank_blend.
+@compute @workgroup_size(WORKGROUP)
+fn rank_blend_samples(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= band_pixels() {
+        return;
+    }
+    if (listing.flags & BEGINS) != 0u {
+        begin_turn();
+    } else {
+        resume_turn(id.x);
+    }
+    let own = entries_of(id.x);
+    let shown = shown_entries(id.x, own.y, SAMPLED);
+    for (var i = shown.x; i < shown.y; i += 1u) {
+        let entry = listed[own.x + i];
+        under_turn(id.x, entry.x, entry.y, faces[entry.y >> MASK_BITS]);
+    }
+    if (listing.flags & ENDS) != 0u {
+        end_turn(id.x);
+    } else {
+        leave_turn(id.x);
+    }
+}

@@ -20,10 +20,20 @@ struct Listing {
     until_key: u32,     // and this one and those behind it
     until_face: u32,
     links: u32,         // heads of lists, before the links of nodes
-    unused: u32,
+    layers: u32,        // that are shown of each list, the nearest ones
+    sample: u32,        // the first of each pixel in a dispatch that blends several,
+    samples: u32,       // and how many
 }
 
 @group(0) @binding(20) var<uniform> listing: Listing;
+
+// What a dispatch that blends does beside: it begins with nothing, or ends with what lies behind.
+const BEGINS: u32 = 1u;
+const ENDS: u32 = 2u;
+// Passes over nearer ranges of depth have shown layers before; others are to come.
+const FOLLOWS: u32 = 4u;
+const GOES_ON: u32 = 8u;
+
 @group(0) @binding(21) var<storage, read> opaque_key: array<u32>;
 @group(0) @binding(22) var<storage, read> opaque_prim: array<u32>;
 @group(0) @binding(10) var<storage, read_write> picture: array<vec4<f32>>;

@@ -1,4 +1,4 @@
-// What a pixel with several samples shows.
+// What a pixel shows of its samples. Twin: spec/src/abuffer/multisample.rs.
 //#import triangle
 
 // The mean of all samples: by halves, so that the mean of equal colours is that colour, and

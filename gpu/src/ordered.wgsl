@@ -47,7 +47,8 @@ fn insert(fragment: Fragment) {
     var at = fragment.pixel;
     var spare = EOL;
     var tries = 0u;
-    while may_step() {
+    // Behind so many nearer ones nothing is shown, and nothing is kept.
+    for (var i = 0u; i < listing.layers && may_step();) {
         var node = atomicLoad(&links[at]);
         if node == EOL {
             // What another invocation hung here meanwhile is followed instead; this node is kept for later.
@@ -74,6 +75,7 @@ fn insert(fragment: Fragment) {
             return;
         }
         at = listing.links + node;
+        i += 1u;
     }
 }
 
@@ -156,7 +158,8 @@ fn ordered_ties_fragment(drawn: Drawn) {
     }
 }
 
-// The list over what lies behind it. A list that was built has at most STEPS nodes.
+// The list, listing.layers of it at most, over what lies behind it. A list that was built has at most STEPS
+// nodes.
 @compute @workgroup_size(WORKGROUP)
 fn ordered_blend(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
@@ -165,7 +168,7 @@ fn ordered_blend(@builtin(global_invocation_id) id: vec3<u32>) {
     let end = opaque_key[id.x];
     var seen = vec4(0.0, 0.0, 0.0, 1.0);
     var node = atomicLoad(&links[id.x]);
-    for (var i = 0u; i < STEPS && node != EOL; i += 1u) {
+    for (var i = 0u; i < min(STEPS, listing.layers) && node != EOL; i += 1u) {
         let slot = slot_at(node);
         if slot.x >= end {
             break;

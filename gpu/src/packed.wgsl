@@ -101,7 +101,7 @@ fn packed_sort(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// Third: as stage resolve. Lists are empty afterwards.
+// Third: as stage resolve, of listing.layers layers at most. Lists are empty afterwards.
 @compute @workgroup_size(WORKGROUP)
 fn packed_resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
@@ -122,9 +122,10 @@ fn packed_resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let end = opaque_key[id.x];
     var i = 0u;
-    while i < STEPS && p.left != EOL && packed_nodes[p.left].key < end {
+    while i < STEPS && p.left_size < listing.layers && p.left != EOL && packed_nodes[p.left].key < end {
         seen = under(seen, unpack(packed_nodes[p.left].colour));
         p.left = next_of(p.left);
+        p.left_size += 1u;
         i += 1u;
     }
     if i == STEPS {

@@ -3,9 +3,7 @@
 //
 // Of a region, as many nodes are stored as it has room for; its counter counts all.
 //#import listing
-
-// End of a list, and an empty list's head.
-const EOL: u32 = 0xffffffffu;
+//#import relink
 
 struct Node {
     key: u32,
@@ -18,6 +16,26 @@ struct Node {
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> nodes: array<Node>;
 @group(0) @binding(9) var<storage, read_write> colours: array<vec4<f32>>;
+
+struct Work {
+    unfinished: atomic<u32>,
+    pixels: array<Progress>,
+}
+
+@group(0) @binding(11) var<storage, read_write> progress: Work;
+
+fn next_of(at: u32) -> u32 {
+    return nodes[at].next;
+}
+
+fn set_next(at: u32, next: u32) {
+    nodes[at].next = next;
+}
+
+// Total order, as stage sort has it.
+fn before(a: u32, b: u32) -> bool {
+    return nodes[a].key < nodes[b].key || (nodes[a].key == nodes[b].key && nodes[a].prim < nodes[b].prim);
+}
 
 // frame.capacity is that of a region.
 fn insert(fragment: Fragment, region: u32) {
@@ -67,4 +85,43 @@ fn regions_fragment(drawn: Drawn) {
     let row = fragment.pixel / frame.width / 8u;
     let across = (frame.width + 7u) / 8u;
     insert(fragment, (row * across + column) % listing.regions);
+}
+
+// Where a pixel stands in its list, whose nodes are in order by now. `left_size` layers have been shown.
+fn under_way(pixel: u32) -> Progress {
+    let p = progress.pixels[pixel];
+    if p.run == 0u {
+        return Progress(EOL, EOL, atomicLoad(&heads[pixel]), EOL, 0u, 0u, 1u, FIND);
+    }
+    return p;
+}
+
+// Then: as stage resolve, of listing.layers layers at most.
+@compute @workgroup_size(WORKGROUP)
+fn regions_blend(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= band_pixels() {
+        return;
+    }
+    let begins = progress.pixels[id.x].run == 0u;
+    var p = under_way(id.x);
+    if p.state == DONE {
+        return;
+    }
+    var seen = select(picture[id.x], vec4(0.0, 0.0, 0.0, 1.0), vec4(begins));
+    let end = opaque_key[id.x];
+    var i = 0u;
+    while i < STEPS && p.left_size < listing.layers && p.left != EOL && nodes[p.left].key < end {
+        seen = under(seen, colours[p.left]);
+        p.left = nodes[p.left].next;
+        p.left_size += 1u;
+        i += 1u;
+    }
+    if i == STEPS {
+        atomicStore(&progress.unfinished, 1u);
+    } else {
+        seen = vec4(seen.rgb + seen.a * behind(id.x), 1.0);
+        p.state = DONE;
+    }
+    picture[id.x] = seen;
+    progress.pixels[id.x] = p;
 }

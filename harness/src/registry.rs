@@ -130,6 +130,31 @@ pub const MEASURED: &[Measured] = &[
         ],
         spec: Some("resolve_samples"),
     },
+    // The same of lists in other layouts: what the stages' own kernels do for one sample.
+    Measured {
+        file: "layouts_samples",
+        over: Some("layouts"),
+        entries: &["rank_blend_samples"],
+        spec: None,
+    },
+    Measured {
+        file: "packed_samples",
+        over: Some("packed"),
+        entries: &["packed_resolve_samples", "packed_taken_samples"],
+        spec: None,
+    },
+    Measured {
+        file: "regions_samples",
+        over: Some("regions"),
+        entries: &["regions_blend_samples"],
+        spec: None,
+    },
+    Measured {
+        file: "ordered_samples",
+        over: Some("ordered"),
+        entries: &["ordered_blend_samples"],
+        spec: None,
+    },
 ];
 
 /// Names of result rows that are no stage, and what they compare.
@@ -160,7 +185,9 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
 
 /// The stages that need no lists, or do more with them than the paper's: the rivals of the
 /// A-buffer. They run beside it, from the same triangles and surfaces.
-pub const RIVALS: [&str; 6] = ["peel", "dual", "alpha", "weighted", "density", "defocus"];
+pub const RIVALS: [&str; 7] = [
+    "peel", "dual", "alpha", "weighted", "density", "defocus", "reduced",
+];
 
 /// The stages of a frame that hand on what they make: not what takes the place of linked lists.
 pub fn handing_on() -> impl Iterator<Item = &'static Stage> {

@@ -19,6 +19,7 @@ mod dual;
 mod multisample;
 mod nearest;
 mod peel;
+mod reduced;
 mod weighted;
 
 use crate::bound::{Bounded, TINY, gamma};
@@ -30,8 +31,9 @@ pub use defocus::{Lens, RADIUS_MAX, defocus};
 pub use density::{attenuation, density};
 pub use dual::{dual, halves, middle};
 pub use multisample::{Order, average, resolve_pixels, resolve_samples, visible};
-pub use nearest::nearest_layers;
+pub use nearest::{nearest_layers, nearest_of};
 pub use peel::{LAYERS_MAX, peel};
+pub use reduced::{HALVINGS_MAX, Reduced, Reduction, Upsampling, reduced};
 pub use weighted::{SUM_LEAST, WEIGHT_LEAST, WEIGHT_MOST, weighted};
 
 /// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").

@@ -11,7 +11,7 @@
 //! | [`vertex`] | transform, clip, snap | `gpu/src/vertex.wgsl` |
 //! | [`raster`] | cover | `gpu/src/raster.wgsl` |
 //! | [`abuffer`] | opaque, build, sort, resolve | `gpu/src/abuffer.wgsl` |
-//! | | peel, dual, alpha, weighted, density, defocus | `gpu/src/peel.wgsl` and so on |
+//! | | peel, dual, alpha, weighted, density, defocus, reduced | `gpu/src/peel.wgsl` and so on |
 //! | [`tiles`] | bin, jagged, shade | `gpu/src/tiles.wgsl` |
 //! | [`layouts`] | bucket, precalc, rank, packed, regions, ordered | `gpu/src/layouts.wgsl` and so on |
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |

@@ -118,7 +118,7 @@ impl Setup {
     }
 
     /// The change of [`Setup::depth`] from one column to the next. Steps of edges are
-    /// below 2^28 and keys below 2^31, so 64 bits hold the sum.
+    /// below 2^28, or 2^30 at a reduced resolution, and keys below 2^31, so 64 bits hold the sum.
     fn depth_step(&self, bits: u32) -> Depth {
         let steps = self.edge_steps(bits);
         let numerator: i64 = (0..3).map(|i| steps[i] * self.corners[i][2]).sum();

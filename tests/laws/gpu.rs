@@ -14,7 +14,7 @@ use triptych_harness::replay::rows::Rows;
 use triptych_harness::replay::spec::SpecRun;
 use triptych_harness::replay::{Extent, layouts, rivals, tiles};
 use triptych_harness::row::Verdict;
-use triptych_spec::abuffer::{Lens, Order, Target};
+use triptych_spec::abuffer::{Lens, Order, Reduction, Target};
 use triptych_spec::raster::Samples;
 use triptych_spec::vertex::{GUARD, Primitives, guard_origin};
 
@@ -181,6 +181,10 @@ fn rivals_agree(layers: &Layers, adapter: &Adapter, path: Path) -> Result<(), Te
         rivals: true,
         density: Some(2.5),
         defocus: Some(lens),
+        reduced: Some(Reduction {
+            halvings: 1,
+            falloff: 40.0,
+        }),
     };
     let plan = Plan::asking(&layers.scene, true, asked);
     let spec = spec_of(layers, &plan)?;

@@ -4,11 +4,13 @@
 mod adapters;
 #[path = "layouts/colours.rs"]
 mod colours;
+#[path = "layouts/nearest.rs"]
+mod nearest;
 
 use std::ops::Range;
 
 use proptest::prelude::*;
-use triptych_spec::abuffer::{EOL, Opaque, Sorted, build, opaque, sort};
+use triptych_spec::abuffer::{EOL, Opaque, Sorted, build, nearest_of, opaque, sort};
 use triptych_spec::layouts::{
     ALL, Arrays, Entry, PRIMS_MAX, Runs, bucket, entry, fragment, ordered, precalc, rank, regions,
 };
@@ -133,15 +135,17 @@ proptest! {
         }
     }
 
-    /// Counting first, and keeping lists in order while they are built, give the same lists.
+    /// Counting first, and keeping lists in order while they are built, give the same lists; of ordered lists
+    /// with no more than so many nodes the nearest are left.
     #[test]
-    fn runs_and_ordered_lists_are_the_lists(layers in layers(), depth_test: bool) {
+    fn runs_and_ordered_lists_are_the_lists(layers in layers(), depth_test: bool, most in 0_u32..6) {
         let Layers { scene, primitives } = &layers;
         let surfaces = opaque(scene, primitives);
         let must = lists(&layers, &surfaces, depth_test);
         let of = (&surfaces, depth_test);
         prop_assert_eq!(&rank(&precalc(scene, primitives, of)), &must);
-        prop_assert_eq!(&ordered(scene, primitives, of), &must);
+        prop_assert_eq!(&ordered(scene, primitives, of, u32::MAX), &must);
+        prop_assert_eq!(&ordered(scene, primitives, of, most), &nearest_of(&must, most));
     }
 
     /// Of each region the first attempts are stored, as many as it has room for, and each node is in one

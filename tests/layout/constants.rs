@@ -4,7 +4,7 @@ use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
 use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
-use triptych_gpu::layouts::{BEGINS, ENDS};
+use triptych_gpu::layouts::{BEGINS, ENDS, FOLLOWS, GOES_ON, SAMPLED};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
@@ -67,6 +67,9 @@ fn constants_are_those_of_rust() {
         ("MASK_BITS", i64::from(MASK_BITS)),
         ("BEGINS", i64::from(BEGINS)),
         ("ENDS", i64::from(ENDS)),
+        ("FOLLOWS", i64::from(FOLLOWS)),
+        ("GOES_ON", i64::from(GOES_ON)),
+        ("SAMPLED", i64::from(SAMPLED)),
     ];
     for (name, value) in constants {
         everywhere(name, &value, constant);

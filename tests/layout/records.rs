@@ -4,6 +4,7 @@ use std::mem::{offset_of, size_of};
 
 use naga::{Module, TypeInner};
 use triptych_gpu::abuffer::PROGRESS;
+use triptych_gpu::abuffer::rivals::Reducing;
 use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
 use triptych_gpu::layouts::Listing;
@@ -111,8 +112,10 @@ fn what_is_told_of_maps_is_that_of_rust() {
     let tiled = layout_of!(Tiled: items capacity first count run groups layers stored);
     everywhere("Tiled", &tiled, layout);
     let listing = layout_of!(Listing: entries regions items run first flags from_key from_face
-        until_key until_face links unused);
+        until_key until_face links layers sample samples);
     everywhere("Listing", &listing, layout);
+    let reducing = layout_of!(Reducing: halvings across down falloff);
+    everywhere("Reduction", &reducing, layout);
     everywhere(
         "PackedNode",
         &words(&["colour", "key", "face", "link"]),

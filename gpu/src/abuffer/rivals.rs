@@ -7,6 +7,7 @@ mod following;
 mod once;
 mod peeling;
 mod peels;
+mod reduced;
 mod targets;
 
 use std::time::Duration;
@@ -22,6 +23,7 @@ pub use following::{Following, Shading, follow};
 pub use once::{Once, Single, once};
 pub use peeling::{Peeling, Technique, is_wide};
 pub use peels::peel;
+pub use reduced::{Low, Reducing, reduce};
 
 /// What rivals are given.
 #[derive(Clone, Copy)]

@@ -95,7 +95,7 @@ fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
         ("tiles", _) => "tiled.items",
         ("ldm", "neighbours") => "told.maps * told.items",
         ("ldm", _) => "told.items",
-        (_, "sort" | "resolve" | "density" | "defocus") => "frame.width * frame.rows",
+        (_, "sort" | "resolve" | "density" | "defocus" | "reduced") => "frame.width * frame.rows",
         _ if of_pixels => "frame.width * frame.rows",
         _ => "frame.items",
     };

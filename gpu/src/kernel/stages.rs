@@ -9,7 +9,7 @@ mod vertex;
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 44] = [
+pub const STAGES: [Stage; 45] = [
     vertex::TRANSFORM,
     vertex::CLIP,
     vertex::SNAP,
@@ -63,6 +63,7 @@ pub const STAGES: [Stage; 44] = [
     rivals::WEIGHTED,
     rivals::DENSITY,
     rivals::DEFOCUS,
+    rivals::REDUCED,
     tiles::BIN,
     tiles::JAGGED,
     tiles::SHADE,

@@ -5,17 +5,10 @@ use triptych_spec::layouts::{Entry, fragment};
 
 use super::Listing;
 use super::room::{Room, Step, no_lists, word};
-use crate::abuffer::STEPS;
 use crate::dispatch::GROUPS_MAX;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::lists::long_passes;
-
-/// A dispatch that blends begins with nothing. Twin: `BEGINS` in `layouts.wgsl`.
-pub const BEGINS: u32 = 1;
-
-/// It ends with what lies behind. Twin: `ENDS` in `layouts.wgsl`.
-pub const ENDS: u32 = 2;
 
 const BUFFERS: [&str; 2] = ["listed", "merged"];
 
@@ -52,30 +45,6 @@ impl Room<'_, '_> {
             self.buffers.swap(BUFFERS);
         }
         Ok(steps)
-    }
-
-    /// Blends lists of at most `longest` entries that are in order; `flags` of the first and the last
-    /// dispatch.
-    pub(super) fn blend(&self, longest: u32, flags: u32) -> Result<Vec<Step>, GpuError> {
-        let steps = usize::try_from(STEPS).expect("a word");
-        let mut passes = Vec::new();
-        for first in (0..longest.max(1)).step_by(steps) {
-            let last = u64::from(first) + STEPS >= u64::from(longest);
-            let mut own = 0;
-            if first == 0 {
-                own |= flags & BEGINS;
-            }
-            if last {
-                own |= flags & ENDS;
-            }
-            let listing = Listing {
-                first,
-                flags: own,
-                ..self.listing
-            };
-            passes.push(Step::Other(self.per_pixel("rank_blend", listing)?));
-        }
-        Ok(passes)
     }
 }
 

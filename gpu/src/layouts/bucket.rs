@@ -5,8 +5,10 @@ use std::ops::Range;
 use triptych_spec::abuffer::Lists;
 use triptych_spec::layouts::{ALL, Entry};
 
-use super::arrays::{BEGINS, ENDS, Linked};
+use super::arrays::Linked;
+use super::ranges::middle;
 use super::room::{Room, Step, pixels_max};
+use super::shown::{BEGINS, ENDS, FOLLOWS, GOES_ON};
 use super::{Built, ENTRIES, Layout, Listing, Options, memory};
 use crate::abuffer::BandResult;
 use crate::error::GpuError;
@@ -30,6 +32,9 @@ struct Bucket<'r, 'g> {
     sorted: Linked<'r>,
     /// Fragments that were counted in all ranges that fitted.
     counted: u64,
+    /// These, nearest first, and the longest list of any.
+    ranges: Vec<Range<Entry>>,
+    longest: u32,
     all: Built,
 }
 
@@ -53,13 +58,19 @@ pub(super) fn run(
         built: linked(),
         sorted: linked(),
         counted: 0,
+        ranges: Vec::new(),
+        longest: 0,
         all: Built::default(),
     };
     bucket.make_room(first.clamp(1, most))?;
     bucket.all_ranges(depths(rasterizer))?;
     let counted = u32::try_from(bucket.counted).unwrap_or(u32::MAX);
+    bucket.all.image = bucket.room.picture()?;
+    for layers in options.nearest {
+        let picture = bucket.nearest(*layers)?;
+        bucket.all.nearest.push(picture);
+    }
     let mut all = bucket.all;
-    all.image = bucket.room.picture()?;
     all.bands.push(BandResult {
         band,
         built: bucket.built.counted(counted),
@@ -99,6 +110,8 @@ impl Bucket<'_, '_> {
             if longest <= self.room.listing.entries {
                 let is_last = ranges.is_empty();
                 self.take(&counts, longest, is_last)?;
+                self.ranges.push(range);
+                self.longest = self.longest.max(longest);
                 continue;
             }
             if range == ALL {
@@ -129,8 +142,8 @@ impl Bucket<'_, '_> {
         }
     }
 
-    /// Fills the arrays with the fragments of a range; how many each pixel has.
-    fn fill(&mut self, range: &Range<Entry>) -> Result<Vec<u32>, GpuError> {
+    /// The passes that fill the arrays with the fragments of a range.
+    fn filling(&mut self, range: &Range<Entry>) -> Result<Vec<Step>, GpuError> {
         let [from_key, from_face] = range.start;
         let [until_key, until_face] = range.end;
         self.room.listing = Listing {
@@ -140,9 +153,14 @@ impl Bucket<'_, '_> {
             until_face,
             ..self.room.listing
         };
-        let clear = self.room.per_pixel("bucket_clear", self.room.listing)?;
-        let mut steps = vec![Step::Other(clear)];
-        steps.extend(self.room.draw("bucket")?);
+        let mut steps = self.room.empty()?;
+        steps.extend(self.room.build()?);
+        Ok(steps)
+    }
+
+    /// Fills the arrays with the fragments of a range; how many each pixel has.
+    fn fill(&mut self, range: &Range<Entry>) -> Result<Vec<u32>, GpuError> {
+        let steps = self.filling(range)?;
         self.all.build += self.room.submit(&steps)?;
         let (gpu, pixels) = (self.room.rasterizer.gpu, self.room.pixels() as usize);
         gpu.read(self.room.buffers.get("counts"), pixels)
@@ -156,17 +174,39 @@ impl Bucket<'_, '_> {
             each(room, counts, |pixel, own| linked.extend(pixel, own))
         };
         read(&self.room, &mut self.built)?;
-        let all = self.room.listing.entries.saturating_mul(self.room.pixels());
-        let mut steps = self.room.rank(longest, all)?;
-        if self.room.is_shown() {
-            let mut flags = if self.all.ranges == 1 { BEGINS } else { 0 };
-            if is_last {
-                flags |= ENDS;
-            }
-            steps.extend(self.room.blend(longest, flags)?);
+        let mut flags = if self.all.ranges == 1 { BEGINS } else { 0 };
+        if is_last {
+            flags |= ENDS;
         }
+        let steps = self.ranked(longest, flags)?;
         self.all.finish += self.room.submit(&steps)?;
         read(&self.room, &mut self.sorted)
+    }
+
+    /// The passes that put the arrays of a range in order, and blend them.
+    fn ranked(&mut self, longest: u32, flags: u32) -> Result<Vec<Step>, GpuError> {
+        let all = self.room.listing.entries.saturating_mul(self.room.pixels());
+        let mut steps = self.room.rank(longest, all)?;
+        steps.extend(self.room.blend_from("rank_blend", longest, flags)?);
+        Ok(steps)
+    }
+
+    /// The picture of so many nearest layers alone, of the ranges that fitted.
+    fn nearest(&mut self, layers: u32) -> Result<Vec<[f32; 3]>, GpuError> {
+        // Several ranges count in these what they have shown.
+        self.room.zeros("offsets", self.room.pixels().into())?;
+        self.room.listing.layers = layers;
+        let count = self.ranges.len();
+        for at in 0..count {
+            let mut flags = if at == 0 { BEGINS } else { FOLLOWS };
+            flags |= if at + 1 == count { ENDS } else { GOES_ON };
+            let range = self.ranges[at].clone();
+            let mut steps = self.filling(&range)?;
+            steps.extend(self.ranked(self.longest, flags)?);
+            self.room.submit(&steps)?;
+        }
+        self.room.listing.layers = u32::MAX;
+        self.room.picture()
     }
 }
 
@@ -236,55 +276,4 @@ fn each(
         take(pixel, &own[..entries.min(count as usize)]);
     }
     Ok(())
-}
-
-/// The middle of what lies both in a range and among the depths; `None` if the range has no two entries.
-fn middle(range: &Range<Entry>, depths: &Range<Entry>) -> Option<Entry> {
-    let number = |[key, face]: Entry| u64::from(key) << 32 | u64::from(face);
-    let [from, until] = [range.start, range.end].map(number);
-    let [near, far] = [depths.start, depths.end].map(number);
-    let middle = from.max(near).midpoint(until.min(far).max(from.max(near)));
-    let middle = middle.clamp(from, until);
-    // Beyond the depths, a range is halved as it is.
-    let middle = match from < middle && middle < until {
-        true => middle,
-        false => from.midpoint(until),
-    };
-    let halves = |n: u64| u32::try_from(n & u64::from(u32::MAX)).expect("32 bits");
-    (from < middle).then(|| [halves(middle >> 32), halves(middle)])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// However ranges are split, they end: at one entry at the latest.
-    #[test]
-    fn ranges_split_until_one_entry_is_left() {
-        let depths = [1000, 0]..[1011, 0];
-        for target in [
-            [1000, 0],
-            [1010, 77],
-            [1010, u32::MAX],
-            [0, 0],
-            [u32::MAX, 3],
-        ] {
-            let (mut range, mut splits) = (ALL, 0);
-            while let Some(middle) = middle(&range, &depths) {
-                assert!(range.start < middle && middle < range.end, "{range:?}");
-                range = match target < middle {
-                    true => range.start..middle,
-                    false => middle..range.end,
-                };
-                splits += 1;
-                assert!(splits < 200, "{range:?}");
-            }
-            assert!(range.contains(&target), "{target:?} in {range:?}");
-        }
-        assert_eq!(
-            middle(&ALL, &depths).map(|m| m[0]),
-            Some(1005),
-            "of the depths"
-        );
-    }
 }

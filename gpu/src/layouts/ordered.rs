@@ -5,6 +5,7 @@ use triptych_spec::layouts::Entry;
 
 use super::arrays::Linked;
 use super::room::{Room, Step};
+use super::shown::longest;
 use super::{Built, Layout, Listing, Options, Tried};
 use crate::abuffer::{BandResult, STEPS};
 use crate::error::GpuError;
@@ -38,11 +39,11 @@ pub(super) fn attempt(
     }
     check_steps(&room)?;
     let lists = lists(&room)?;
-    if room.is_shown() {
-        let blend = room.per_pixel("ordered_blend", room.listing)?;
-        all.finish += room.submit(&[Step::Other(blend)])?;
-        all.image = room.picture()?;
-    }
+    let longest = longest(&lists);
+    all.finish += room.submit(&room.blend(longest)?)?;
+    all.image = room.picture()?;
+    all.nearest = room.pictures(options.nearest, (longest, 0))?;
+    check_steps(&room)?;
     all.bands.push(BandResult {
         band: room.band,
         sorted: Some(lists.clone()),

@@ -38,13 +38,12 @@ pub(super) fn attempt(
     if let Some(longest) = inspect(&result.built) {
         all.finish += until_done(&room, "packed_sort", longest)?;
         result.sorted = Some(lists(&room)?);
-        if room.is_shown() {
-            all.finish += until_done(&room, "packed_resolve", longest)?;
-            all.image = room.picture()?;
-            // Another frame, without clearing anything.
-            room.submit(&room.draw("packed")?)?;
-            all.again.push((band, lists(&room)?));
-        }
+        all.finish += room.submit(&room.blend(longest)?)?;
+        all.image = room.picture()?;
+        // Other frames, without clearing anything.
+        all.nearest = room.pictures(options.nearest, (longest, capacity))?;
+        room.submit(&room.draw("packed")?)?;
+        all.again.push((band, lists(&room)?));
     }
     all.bands.push(result);
     Ok(Tried::Done(Box::new(all)))

@@ -2,7 +2,7 @@
 
 use triptych_spec::layouts::Entry;
 
-use super::arrays::{BEGINS, ENDS, Linked};
+use super::arrays::Linked;
 use super::room::{Room, Step};
 use super::{Built, Layout, Options, Tried};
 use crate::abuffer::BandResult;
@@ -36,9 +36,7 @@ pub(super) fn attempt(
     let built = linked(&room, &offsets, counted)?;
     let longest = longest(&offsets);
     let mut steps = room.rank(longest, counted)?;
-    if room.is_shown() {
-        steps.extend(room.blend(longest, BEGINS | ENDS)?);
-    }
+    steps.extend(room.blend(longest)?);
     all.finish += room.submit(&steps)?;
     all.image = room.picture()?;
     all.bands.push(BandResult {
@@ -46,6 +44,7 @@ pub(super) fn attempt(
         built,
         sorted: Some(linked(&room, &offsets, counted)?),
     });
+    all.nearest = room.pictures(options.nearest, (longest, counted))?;
     Ok(Tried::Done(Box::new(all)))
 }
 

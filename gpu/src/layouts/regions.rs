@@ -1,4 +1,4 @@
-//! Linked nodes from several counters. What follows the lists is that of stages `sort` and `resolve`.
+//! Linked nodes from several counters. Lists are put in order by stage `sort`.
 
 use std::time::Duration;
 
@@ -38,12 +38,11 @@ pub(super) fn attempt(
         built,
     };
     if let Some(longest) = inspect(&result.built) {
-        all.finish += until_done(&room, "sort", longest)?;
+        all.finish += sort(&room, longest)?;
         result.sorted = Some(lists(&room, &attempts)?);
-        if room.is_shown() {
-            all.finish += until_done(&room, "resolve", longest)?;
-            all.image = room.picture()?;
-        }
+        all.finish += room.submit(&room.blend(longest)?)?;
+        all.image = room.picture()?;
+        all.nearest = room.pictures(options.nearest, (longest, 0))?;
     }
     all.bands.push(result);
     Ok(Tried::Done(Box::new(all)))
@@ -70,12 +69,9 @@ impl Room<'_, '_> {
     }
 }
 
-/// Dispatches a stage of the A-buffer until no pixel asks for more.
-fn until_done(
-    room: &Room<'_, '_>,
-    entry: &'static str,
-    longest: u32,
-) -> Result<Duration, GpuError> {
+/// Dispatches stage sort of the A-buffer until no pixel asks for more.
+fn sort(room: &Room<'_, '_>, longest: u32) -> Result<Duration, GpuError> {
+    let entry = "sort";
     let groups = room.pixels().div_ceil(WORKGROUP);
     let step = [Step::Other(room.pass_of(
         "abuffer",

@@ -98,6 +98,8 @@ impl<'r, 'g> Room<'r, 'g> {
             listing: Listing {
                 until_key,
                 until_face,
+                layers: u32::MAX,
+                samples: rasterizer.samples.count(),
                 ..Listing::default()
             },
             work: rasterizer.work(band, |prim| !is_opaque(prim))?,
@@ -107,11 +109,6 @@ impl<'r, 'g> Room<'r, 'g> {
 
     pub(super) fn pixels(&self) -> u32 {
         self.band.pixels(self.rasterizer.size)
-    }
-
-    /// Whether there is a picture to be made.
-    pub(super) fn is_shown(&self) -> bool {
-        self.frame.samples == 1
     }
 
     /// Makes a buffer of so many words of zeros.
@@ -192,16 +189,11 @@ impl<'r, 'g> Room<'r, 'g> {
         self.rasterizer.gpu.submit(encoder)
     }
 
-    /// The picture; empty where pixels have several samples.
+    /// The picture: the mean of a pixel's samples is where its first one was.
     pub(super) fn picture(&self) -> Result<Vec<[f32; 3]>, GpuError> {
-        match self.is_shown() {
-            true => image(
-                self.rasterizer.gpu,
-                self.buffers.get("picture"),
-                self.pixels(),
-            ),
-            false => Ok(Vec::new()),
-        }
+        let (gpu, samples) = (self.rasterizer.gpu, self.frame.samples);
+        let all = image(gpu, self.buffers.get("picture"), self.pixels() * samples)?;
+        Ok(all.into_iter().step_by(samples as usize).collect())
     }
 }
 

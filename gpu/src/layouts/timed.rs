@@ -2,12 +2,10 @@
 
 use triptych_spec::abuffer::Lists;
 
-use super::arrays::{BEGINS, ENDS};
 use super::room::{Room, Step};
 use super::{Layout, Options, REGIONS, bucket, check, ordered, packed, precalc, regions};
-use crate::abuffer::dispatches;
 use crate::error::GpuError;
-use crate::frame::{Band, WORKGROUP};
+use crate::frame::Band;
 use crate::raster::Rasterizer;
 use crate::timer::Timer;
 
@@ -22,6 +20,8 @@ pub enum Span {
     Rank,
     /// The picture.
     Blend,
+    /// A whole frame of so many nearest layers alone, all parts of it, after that of all.
+    Nearest(u32),
 }
 
 /// A whole target that is set up, with room for exactly what there is.
@@ -37,7 +37,7 @@ pub struct Timed<'r, 'g> {
 }
 
 impl<'r, 'g> Timed<'r, 'g> {
-    /// Sets up a target with one sample a pixel. What was built is certified by `inspect`, which gives the
+    /// Sets up a target, and frames of [`Options::nearest`] layers alone. What was built is certified by `inspect`, which gives the
     /// length of the longest list.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ impl<'r, 'g> Timed<'r, 'g> {
             stage: layout.name(),
         })?;
         timed.longest = longest;
-        timed.set_up_picture()?;
+        timed.set_up_picture(options.nearest)?;
         // Packed nodes begin with empty lists again.
         for span in 0..timed.spans.len() {
             timed.run(span)?;
@@ -80,72 +80,30 @@ impl<'r, 'g> Timed<'r, 'g> {
     }
 
     fn set_up_build(&mut self) -> Result<(), GpuError> {
-        let room = &self.room;
-        let clear = match room.layout {
-            Layout::Bucket => vec![Step::Other(room.per_pixel("bucket_clear", room.listing)?)],
-            Layout::Regions => vec![Step::Other(room.per_pixel("regions_clear", room.listing)?)],
-            Layout::Ordered => vec![ordered::clear(room)?],
-            // Filling the runs uses their counts up.
-            Layout::Precalc | Layout::Packed => Vec::new(),
-        };
-        let build = match room.layout {
-            Layout::Precalc => {
-                let mut steps = precalc::count(room)?;
-                steps.extend(room.draw("precalc_fill")?);
-                steps
-            }
-            Layout::Ordered => ordered::draw(room)?,
-            layout => room.draw(layout.name())?,
-        };
-        self.spans
-            .extend([(Span::Clear, clear), (Span::Build, build)]);
+        let parts = [
+            (Span::Clear, self.room.empty()?),
+            (Span::Build, self.room.build()?),
+        ];
+        self.spans.extend(parts);
         self.spans.retain(|(_, steps)| !steps.is_empty());
         Ok(())
     }
 
-    fn set_up_picture(&mut self) -> Result<(), GpuError> {
-        let longest = self.longest;
-        let all = match self.room.layout {
-            Layout::Bucket => self.room.listing.entries.saturating_mul(self.room.pixels()),
+    fn set_up_picture(&mut self, nearest: &[u32]) -> Result<(), GpuError> {
+        let room = &mut self.room;
+        let all = match room.layout {
+            Layout::Bucket => room.listing.entries.saturating_mul(room.pixels()),
             _ => self.fragments,
         };
-        let (rank, blend) = match self.room.layout {
-            Layout::Bucket | Layout::Precalc => {
-                let rank = self.room.rank(longest, all)?;
-                (rank, self.room.blend(longest, BEGINS | ENDS)?)
-            }
-            Layout::Packed => (
-                self.until_done("packed", "packed_sort")?,
-                self.until_done("packed", "packed_resolve")?,
-            ),
-            Layout::Regions => (
-                self.until_done("abuffer", "sort")?,
-                self.until_done("abuffer", "resolve")?,
-            ),
-            Layout::Ordered => {
-                let blend = self.room.per_pixel("ordered_blend", self.room.listing)?;
-                (Vec::new(), vec![Step::Other(blend)])
-            }
-        };
-        self.spans
-            .extend([(Span::Rank, rank), (Span::Blend, blend)]);
+        let lists = (self.longest, all);
+        let rank = room.order(self.longest, all)?;
+        let mut parts = vec![(Span::Rank, rank), (Span::Blend, room.blend(self.longest)?)];
+        for n in nearest {
+            parts.push((Span::Nearest(*n), room.nearest(*n, lists)?));
+        }
+        self.spans.extend(parts);
         self.spans.retain(|(_, steps)| !steps.is_empty());
         Ok(())
-    }
-
-    /// As many dispatches as lists of that length may take; those that come after the last do nothing.
-    fn until_done(&self, file: &str, entry: &str) -> Result<Vec<Step>, GpuError> {
-        let room = &self.room;
-        let groups = room.pixels().div_ceil(WORKGROUP);
-        let pass = |file, entry| {
-            room.pass_of(file, entry, room.listing, groups)
-                .map(Step::Other)
-        };
-        let mut steps = vec![pass("nearest", "clear_progress")?];
-        for _ in 0..dispatches(self.longest) {
-            steps.push(pass(file, entry)?);
-        }
-        Ok(steps)
     }
 
     /// The parts, in the order in which they run.
@@ -162,18 +120,37 @@ impl<'r, 'g> Timed<'r, 'g> {
         self.room.submit(&self.spans[span].1).map(drop)
     }
 
-    /// Runs every part once, one after another; the lists in order, and the picture.
+    /// Runs every part of the frame of all layers once, one after another; the lists in order, and the picture.
     ///
     /// # Errors
     /// Whatever the device reports.
     pub fn frame(&self) -> Result<(Lists, Vec<[f32; 3]>), GpuError> {
-        let blend = self.spans.len() - 1;
+        let blend = self.blend();
         for span in 0..blend {
             self.run(span)?;
         }
         let lists = read(&self.room)?;
         self.run(blend)?;
         Ok((lists, self.room.picture()?))
+    }
+
+    /// Runs the frames of [`Options::nearest`] layers alone, after [`Self::frame`]; their pictures.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn nearest(&self) -> Result<Vec<Vec<[f32; 3]>>, GpuError> {
+        let mut pictures = Vec::new();
+        for span in self.blend() + 1..self.spans.len() {
+            self.run(span)?;
+            pictures.push(self.room.picture()?);
+        }
+        Ok(pictures)
+    }
+
+    /// The part that makes the picture of all layers.
+    fn blend(&self) -> usize {
+        let blend = self.spans().position(|span| span == Span::Blend);
+        blend.expect("every layout has a picture")
     }
 
     /// Runs every part once, and gives the seconds of each.

@@ -1,6 +1,6 @@
 //! Which rivals of the lists a scene asks for.
 
-use triptych_spec::abuffer::Lens;
+use triptych_spec::abuffer::{Lens, Reduction};
 
 use super::Pass;
 use crate::registry::RIVALS;
@@ -15,6 +15,8 @@ pub struct Asked {
     pub density: Option<f32>,
     /// A lens.
     pub defocus: Option<Lens>,
+    /// Fragments at a resolution that is reduced so far.
+    pub reduced: Option<Reduction>,
 }
 
 impl Asked {
@@ -26,6 +28,7 @@ impl Asked {
             rivals: loaded.family != "raster",
             density: stated.density.map(|density| density.0),
             defocus: stated.defocus.map(|defocus| defocus.0),
+            reduced: stated.reduced.map(|reduced| reduced.0),
         }
     }
 
@@ -53,6 +56,10 @@ impl Asked {
             "defocus" => {
                 let lens = self.defocus.ok_or("the scene states no defocus")?;
                 Ok(format!("a lens of aperture {}", lens.aperture))
+            }
+            "reduced" => {
+                let reduction = self.reduced.ok_or("the scene states no reduction")?;
+                Ok(format!("pixels of {0} x {0}", reduction.side()))
             }
             _ if !self.rivals => Err("scenes of raster are about coverage"),
             _ => Ok(format!("{transparent} transparent triangles")),

@@ -30,7 +30,9 @@ pub const FAMILIES: &[Family] = &[
     },
     Family {
         name: "abuffer",
-        files: &["alpha", "defocus", "density", "dual", "peel", "weighted"],
+        files: &[
+            "alpha", "defocus", "density", "dual", "peel", "reduced", "weighted",
+        ],
         chain: Chain::Frame,
         stages: &[
             Stage {
@@ -98,6 +100,15 @@ pub const FAMILIES: &[Family] = &[
                     "defocus",
                     "defocus_surface",
                     "defocus_behind",
+                ],
+            ),
+            per_pixel(
+                "reduced",
+                &[
+                    "reduced_clear",
+                    "reduced_layers",
+                    "reduced_nearest",
+                    "reduced",
                 ],
             ),
         ],

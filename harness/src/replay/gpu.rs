@@ -29,7 +29,7 @@ use crate::plan::Plan;
 use crate::row::Class;
 pub use from::From;
 use lists::join;
-pub(super) use lists::relink;
+pub(super) use lists::{relink, relinked};
 pub use path_name::PathName;
 pub use vertices::Vertices;
 

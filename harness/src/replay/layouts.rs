@@ -8,12 +8,12 @@ use triptych_gpu::frame::Band;
 use triptych_gpu::layouts::{Built, Layout, Options, is_wide, run as draw};
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_spec::abuffer::{Lists, Sorted};
-use triptych_spec::layouts::packed;
 
 use wgpu::DeviceType;
 
 use super::Extent;
 use super::gpu::{From, GpuLeg};
+use super::rivals::Listed;
 use super::rows::Rows;
 use super::tiles::part;
 use crate::cause::Cause;
@@ -151,6 +151,7 @@ impl GpuLeg<'_> {
             background: self.scene.background,
             capacity: self.capacity,
             arrays: None,
+            nearest: &[self.listed(layout).layers],
         };
         let inspect = |lists: &Lists| certify(lists).longest();
         let is_opaque = |prim| own.is_opaque(prim);
@@ -235,18 +236,20 @@ impl GpuLeg<'_> {
             Some(compare::order::compare(&must, sorted, width))
         };
         let ordered = built.bands.iter().filter_map(ordered);
-        let all = Judgement::sum(ordered);
-        if self.scene.samples.count() > 1 {
-            return all;
+        let must = self.listed(layout);
+        let picture = compare::image::compare(&must.all, &built.image, width);
+        let nearest = built.nearest.iter();
+        let nearest = nearest.map(|seen| compare::image::compare(&must.nearest, seen, width));
+        Judgement::sum(ordered.chain([picture]).chain(nearest))
+    }
+
+    /// What the spec makes of a layout's lists.
+    fn listed(&self, layout: Layout) -> &Listed {
+        let own = &self.spec.value;
+        match layout {
+            Layout::Packed => own.rivals.packed(self.scene, own),
+            _ => own.rivals.listed(self.scene, own),
         }
-        let picture = match layout {
-            Layout::Packed => {
-                let must = packed(self.scene, &own.primitives, &own.opaque, &own.sorted);
-                compare::image::compare(&must, &built.image, width)
-            }
-            _ => compare::image::compare(&own.image, &built.image, width),
-        };
-        Judgement::sum([all, picture])
     }
 
     /// Arrays in order, and the pictures that they give.

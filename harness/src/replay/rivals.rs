@@ -1,6 +1,7 @@
 //! The rivals of the A-buffer, each against its twin in the spec, from the spec's triangles,
 //! opaque surfaces and, where it needs them, sorted lists.
 
+mod reduced;
 mod spec;
 
 use triptych_gpu::abuffer::rivals::{
@@ -18,7 +19,8 @@ use crate::compare::{self, compare};
 use crate::observe::{Gpu, Observed};
 use crate::registry::RIVALS;
 use crate::row::Class;
-pub use spec::{Layered, Picture, Rivals};
+pub use reduced::Halved;
+pub use spec::{Layered, Listed, NEAREST, Picture, Rivals};
 
 /// Most work of a technique on a scene that a default run has it do: its passes over the
 /// triangles times triangles and their fragments.
@@ -148,6 +150,7 @@ impl GpuLeg<'_> {
                     self.judge_picture(stage, must, followed(Shading::Defocus(lens))?, rows);
                 }
             }
+            "reduced" => self.reduced(stage, rasterizer, rows)?,
             _ => unreachable!("every rival has its leg"),
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! The same lists by tiles: bins, lists as they lie side by side, picture.
 
+mod nearest;
+
 use triptych_gpu::abuffer::BandResult;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::frame::Band;
@@ -99,7 +101,7 @@ impl GpuLeg<'_> {
             linked
                 .into_iter()
                 .for_each(|linked| self.judge_linked(linked, rows));
-            return Ok(());
+            return self.judge_nearest(rasterizer, options, rows);
         };
         for (stage, is_there) in [("local", local.is_some()), ("linked", linked.is_some())] {
             if is_there {

@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 50] = [
+const ORDER: [&str; 51] = [
     "leg",
     "all",
     "expect",
@@ -29,6 +29,7 @@ const ORDER: [&str; 50] = [
     "weighted",
     "density",
     "defocus",
+    "reduced",
     "bin",
     "jagged",
     "shade",

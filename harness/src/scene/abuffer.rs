@@ -4,7 +4,7 @@ use serde::Deserialize;
 use triptych_spec::abuffer::Order;
 use triptych_spec::raster::Samples;
 
-use super::blending::{Defocus, Density};
+use super::blending::{Defocus, Density, Reduced};
 use super::value::Capacity;
 use super::{InputError, Parsed};
 
@@ -38,6 +38,8 @@ pub struct Abuffer {
     pub density: Option<Density>,
     /// A lens; without it stage `defocus` does not run.
     pub defocus: Option<Defocus>,
+    /// A reduced resolution; without it stage `reduced` does not run.
+    pub reduced: Option<Reduced>,
 }
 
 /// In which order layers lie at each sample.

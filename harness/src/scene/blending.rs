@@ -1,7 +1,7 @@
 //! What a scene makes of its layers beside blending them.
 
 use serde::Deserialize;
-use triptych_spec::abuffer::{Lens, RADIUS_MAX};
+use triptych_spec::abuffer::{HALVINGS_MAX, Lens, RADIUS_MAX, Reduction};
 use triptych_spec::vertex::DEPTH_ONE;
 
 /// Largest density: from there on, light comes through no difference of depth that matters.
@@ -72,6 +72,35 @@ impl TryFrom<Stated> for Defocus {
             focus: key.min(DEPTH_ONE.cast_unsigned()),
             aperture: word("aperture", aperture, 0..=APERTURE_MAX)?,
             radius: word("radius", radius, 1..=RADIUS_MAX)?,
+        }))
+    }
+}
+
+/// A reduced resolution, by the side of a pixel's block.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "StatedReduction")]
+pub struct Reduced(pub Reduction);
+
+/// The same as written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StatedReduction {
+    /// Pixels along a side: a power of two.
+    side: i64,
+    /// How fast weights fall with depth, in units of one over the depth range.
+    falloff: f64,
+}
+
+impl TryFrom<StatedReduction> for Reduced {
+    type Error = String;
+    fn try_from(stated: StatedReduction) -> Result<Self, String> {
+        let StatedReduction { side, falloff } = stated;
+        let halvings = (0..=HALVINGS_MAX).find(|n| 1 << n == side);
+        let halvings = halvings.ok_or_else(|| format!("side = {side} is not 1, 2 or 4"))?;
+        let falloff = Density::try_from(falloff).map_err(|e| format!("falloff = {e}"))?;
+        Ok(Self(Reduction {
+            halvings,
+            falloff: falloff.0,
         }))
     }
 }

@@ -7,6 +7,25 @@
 use super::{EOL, Lists, Sorted};
 use crate::raster::Fragment;
 
+/// The `n` nearest fragments of each list that is in order: what is left of [`super::sort`] by
+/// [`nearest_layers`]. What blends lists in order makes the picture of `n` layers of it, whatever the
+/// layout that they come from.
+pub fn nearest_of(sorted: &Sorted, n: u32) -> Sorted {
+    let mut nearest = Sorted {
+        offsets: vec![0],
+        fragments: Vec::new(),
+    };
+    for pixel in 0..sorted.offsets.len() - 1 {
+        let list = sorted.list(pixel);
+        nearest
+            .fragments
+            .extend(&list[..list.len().min(n as usize)]);
+        let end = u32::try_from(nearest.fragments.len()).expect("fewer than 2^32 fragments");
+        nearest.offsets.push(end);
+    }
+    nearest
+}
+
 /// Technique `nearest_layers`: the `n` nearest fragments of each list, in the order that
 /// [`super::sort`] gives them, `(key, prim)`; all of a list that has no more than `n`.
 ///

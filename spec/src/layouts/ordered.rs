@@ -14,11 +14,13 @@ use crate::vertex::Primitives;
 /// however their walks interleave, node `i` ends with the `(i + 1)`-th nearest. A walk takes a step for each
 /// node of a list that never has more nodes than fragments, and waits for nobody.
 ///
-/// Ties go by triangle, as everywhere.
+/// Ties go by triangle, as everywhere. A list has `most` nodes at most: what would go on beyond them is
+/// dropped, which is the farthest, so that the nearest are left whoever comes first.
 pub fn ordered(
     scene: &Scene,
     primitives: &Primitives,
     (opaque, depth_test): (&Opaque, bool),
+    most: u32,
 ) -> Sorted {
     let mut lists: Vec<Vec<Entry>> = vec![Vec::new(); primitives.size.pixels()];
     stored(scene, primitives, (opaque, depth_test), |f| {
@@ -29,7 +31,9 @@ pub fn ordered(
                 std::mem::swap(&mut mine, node);
             }
         }
-        list.push(mine);
+        if list.len() < most as usize {
+            list.push(mine);
+        }
     });
     let mut sorted = Sorted {
         offsets: vec![0],

@@ -1,7 +1,8 @@
 //! Nodes whose colours have a byte a channel.
 
-use crate::abuffer::{NOTHING, Opaque, Sorted};
+use crate::abuffer::{NOTHING, Opaque, Sorted, average, visible};
 use crate::bound::{Bounded, Real, Sum, TINY, U};
+use crate::raster::Fragment;
 use crate::scene::Scene;
 use crate::vertex::Primitives;
 
@@ -25,8 +26,9 @@ fn unpacked(channel: f32) -> Bounded {
     }
 }
 
-/// Stage `packed`: as stage `resolve` with one sample a pixel, of layers whose colours and opacities are cut
-/// to 0 to 1 and rounded to 256 steps. Opaque surfaces and the background are not in lists, and exact.
+/// Stage `packed`: as stage `resolve`, of layers in the order of their lists whose colours and opacities are
+/// cut to 0 to 1 and rounded to 256 steps; the mean, where pixels have several samples. Opaque surfaces and
+/// the background are not in lists, and exact.
 ///
 /// The value is that of colours before rounding; the bound holds what half a step of every channel and
 /// opacity makes of it. Each operation carries the errors of its operands, through the blend. A product of
@@ -39,11 +41,13 @@ pub fn packed(
     sorted: &Sorted,
 ) -> Vec<[Bounded; 3]> {
     let colour = |prim: u32| scene.triangles[primitives.source[prim as usize] as usize].colour;
-    let pixel = |pixel: usize| {
-        let end = opaque.key[pixel];
-        let layers = sorted.list(pixel).iter().take_while(|f| f.key < end);
+    let count = primitives.samples.count() as usize;
+    let sample = |place: usize| {
+        let (pixel, s) = (place / count, place % count);
+        let shows = |f: &&Fragment| visible(primitives, opaque, f) >> s & 1 == 1;
+        let layers = sorted.list(pixel).iter().filter(shows);
         let layers: Vec<[f32; 4]> = layers.map(|f| colour(f.prim)).collect();
-        let behind = match opaque.prim[pixel] {
+        let behind = match opaque.prim[place] {
             NOTHING => scene.background,
             prim => {
                 let [r, g, b, _] = colour(prim);
@@ -52,7 +56,8 @@ pub fn packed(
         };
         over(&layers, behind)
     };
-    (0..primitives.size.pixels()).map(pixel).collect()
+    let samples: Vec<_> = (0..count * primitives.size.pixels()).map(sample).collect();
+    average(&samples, primitives.samples.count())
 }
 
 fn over(layers: &[[f32; 4]], behind: [f32; 3]) -> [Bounded; 3] {

@@ -98,7 +98,7 @@ impl Samples {
     /// those that were found on that grid.
     pub fn offsets(&self, bits: u32) -> impl Iterator<Item = [i64; 2]> + '_ {
         let places = self.at[..usize::from(self.count)].iter();
-        places.map(move |at| at.map(|place| i64::from(place) >> (POSITION_BITS - bits)))
+        places.map(move |at| at.map(|place| sub_pixels(place, bits)))
     }
 
     /// The least and the largest of [`Samples::offsets`], right and down each by itself.
@@ -113,9 +113,7 @@ impl Samples {
     /// Where sample `s` of a pixel lies, in sub-pixels.
     pub fn point(&self, s: u32, [column, row]: [u32; 2], bits: u32) -> [i64; 2] {
         let at = self.at[s as usize];
-        let place = |pixel: u32, at: u8| {
-            (i64::from(pixel) << bits) + (i64::from(at) >> (POSITION_BITS - bits))
-        };
+        let place = |pixel: u32, at: u8| (i64::from(pixel) << bits) + sub_pixels(at, bits);
         [place(column, at[0]), place(row, at[1])]
     }
 
@@ -126,6 +124,11 @@ impl Samples {
             .map(|at| at.map(|place| f64::from(place) / f64::from(1 << POSITION_BITS)))
             .collect()
     }
+}
+
+/// A place within a pixel, in sub-pixels of a grid of `bits`.
+fn sub_pixels(place: u8, bits: u32) -> i64 {
+    (i64::from(place) << bits) >> POSITION_BITS
 }
 
 /// The samples of a mask, lowest first.

@@ -1,7 +1,7 @@
 //! Laws of the nearest layers.
 
 use proptest::prelude::*;
-use triptych_spec::abuffer::{EOL, Lists, Node, nearest_layers, sort};
+use triptych_spec::abuffer::{EOL, Lists, Node, nearest_layers, nearest_of, sort};
 
 use super::{by_pixel, layers};
 use crate::config;
@@ -20,6 +20,7 @@ proptest! {
         let mut must = by_pixel(&sort(&lists));
         must.iter_mut().for_each(|list| list.truncate(n as usize));
         prop_assert_eq!(by_pixel(&nearest_layers(&lists, n)), must);
+        prop_assert_eq!(nearest_of(&sort(&lists), n), nearest_layers(&lists, n));
     }
 
     /// The same of equal keys in any order, as a GPU leaves them and the spec never does.

@@ -4,6 +4,8 @@
 mod bounds;
 #[path = "rivals/closed_forms.rs"]
 mod closed_forms;
+#[path = "rivals/reduced.rs"]
+mod reduced;
 
 use proptest::prelude::*;
 use triptych_spec::abuffer::{

@@ -17,6 +17,7 @@ fn options(opaque: &Opaque, arrays: Option<u32>, capacity: Option<u32>) -> Optio
         background: [1.0; 3],
         capacity,
         arrays,
+        nearest: &[],
     }
 }
 

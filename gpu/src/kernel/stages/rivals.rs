@@ -113,3 +113,22 @@ pub(super) const DEFOCUS: Stage = Stage {
         beyond the border pixels are those at it. Fourth, followed by the third: the same of \
         opaque surfaces. Fifth: over the background.",
 };
+
+/// Fragments at a reduced resolution.
+pub(super) const REDUCED: Stage = Stage {
+    name: "reduced",
+    file: "reduced",
+    compute: &[
+        "reduced_clear",
+        "reduced_layers",
+        "reduced_nearest",
+        "reduced",
+    ],
+    fragment: &[],
+    contract: "Over the reduced target, first pass as for density; second: as resolve, without what lies \
+        behind, to picture[i] with what goes through. Over the full one, where these are reduced_layer: third, \
+        pixel i has that of the block of 2^reduction.halvings pixels a side that it is in; fourth, the mean of \
+        the four whose middles are around its own, clamped at the border, with the weights of bilinear \
+        interpolation over 1 + reduction.falloff d, where d is the difference of opaque_key[i] and guide of \
+        each, both at most 2^31, over 2^31. Each over what lies behind, to picture[i].",
+};

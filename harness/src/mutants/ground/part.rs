@@ -5,7 +5,16 @@ use triptych_gpu::wgsl::{Sources, WgslError};
 use crate::registry::RIVALS;
 
 /// Files of the lists in other layouts.
-pub(super) const LAYOUTS: [&str; 4] = ["layouts", "packed", "regions", "ordered"];
+pub(super) const LAYOUTS: [&str; 8] = [
+    "layouts",
+    "packed",
+    "regions",
+    "ordered",
+    "layouts_samples",
+    "packed_samples",
+    "regions_samples",
+    "ordered_samples",
+];
 
 /// Files of the lists by tiles.
 const TILES: [&str; 6] = [
@@ -37,7 +46,7 @@ pub(super) fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError
     if differ(sources, native, &["vertex"])?.next().is_some() {
         return Ok(Part::Vertex);
     }
-    let lists = differ(sources, native, &["raster", "abuffer"])?.next();
+    let lists = differ(sources, native, &["raster", "abuffer", "multisample"])?.next();
     let rivals = differ(sources, native, &RIVALS)?.next();
     let tiles = differ(sources, native, &TILES)?.next();
     let layouts = differ(sources, native, &LAYOUTS)?.next();

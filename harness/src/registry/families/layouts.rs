@@ -36,7 +36,7 @@ pub(super) const LAYOUTS: Family = Family {
         },
         Stage {
             name: "regions",
-            compute: Twin::Entries(&["regions_clear", "regions"]),
+            compute: Twin::Entries(&["regions_clear", "regions", "regions_blend"]),
             fragment: Twin::Entries(&["regions_fragment"]),
         },
         Stage {

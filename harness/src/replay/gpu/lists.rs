@@ -8,16 +8,26 @@ use crate::replay::spec::SpecRun;
 
 /// The spec's lists with links in sorted order.
 pub(in crate::replay) fn relink(spec: &SpecRun) -> Lists {
-    let (sorted, faces) = (&spec.sorted, &spec.faces);
+    Lists {
+        attempts: spec.lists.attempts,
+        capacity: spec.lists.capacity,
+        ..relinked(&spec.sorted, &spec.faces)
+    }
+}
+
+/// Sorted lists with links in their order, and room for just these.
+pub(in crate::replay) fn relinked(sorted: &Sorted, faces: &[[f32; 4]]) -> Lists {
+    let count = u32::try_from(sorted.fragments.len()).expect("fewer than 2^32 fragments");
     let mut lists = Lists {
-        heads: Vec::with_capacity(spec.lists.heads.len()),
+        heads: Vec::with_capacity(sorted.offsets.len()),
         nodes: Vec::with_capacity(sorted.fragments.len()),
         colours: sorted
             .fragments
             .iter()
             .map(|f| faces[f.prim as usize])
             .collect(),
-        ..spec.lists.clone()
+        attempts: count,
+        capacity: count,
     };
     for range in sorted.offsets.windows(2) {
         lists

@@ -5,8 +5,10 @@ use std::time::Duration;
 
 use triptych_spec::abuffer::{self, LAYERS_MAX, Lens, Sorted, Target};
 use triptych_spec::bound::Bounded;
+use triptych_spec::layouts;
 use triptych_spec::scene::Scene;
 
+use super::reduced::Halved;
 use crate::plan::Asked;
 use crate::replay::spec::{SpecRun, timed};
 
@@ -37,6 +39,36 @@ pub struct Rivals {
     weighted: OnceLock<Picture>,
     density: OnceLock<Picture>,
     defocus: OnceLock<Picture>,
+    listed: OnceLock<Listed>,
+    packed: OnceLock<Listed>,
+    reduced: OnceLock<Halved>,
+}
+
+/// Numbers of nearest layers that pictures are made of, beside that of all: the paper's.
+pub const NEAREST: [u32; 7] = [0, 2, 4, 8, 16, 32, 64];
+
+/// What lists show in the order that they are in.
+pub struct Listed {
+    /// The picture of all layers.
+    pub all: Vec<[Bounded; 3]>,
+    /// How many nearest ones are shown alone: of [`NEAREST`], the most that leave any out.
+    pub layers: u32,
+    /// The picture of these.
+    pub nearest: Vec<[Bounded; 3]>,
+}
+
+impl Listed {
+    fn of(sorted: &Sorted, blend: impl Fn(&Sorted) -> Vec<[Bounded; 3]>) -> Self {
+        let lengths = sorted.offsets.windows(2).map(|run| run[1] - run[0]);
+        let longest = lengths.max().unwrap_or(0);
+        let fewer = NEAREST.into_iter().rev().find(|n| *n < longest);
+        let layers = fewer.unwrap_or(0);
+        Self {
+            all: blend(sorted),
+            layers,
+            nearest: blend(&abuffer::nearest_of(sorted, layers)),
+        }
+    }
 }
 
 fn picture(image: impl FnOnce() -> Vec<[Bounded; 3]>) -> Picture {
@@ -61,6 +93,27 @@ impl Rivals {
             asked,
             ..Self::default()
         }
+    }
+
+    /// Stage `reduced`, if the scene states a reduction.
+    pub fn reduced(&self, scene: &Scene, spec: &SpecRun) -> Option<&Halved> {
+        let reduction = self.asked.reduced?;
+        let halved = || Halved::of(reduction, scene, spec);
+        Some(self.reduced.get_or_init(halved))
+    }
+
+    /// Pictures of lists, whatever their layout, in the order that they are in.
+    pub fn listed(&self, scene: &Scene, spec: &SpecRun) -> &Listed {
+        let (prims, opaque) = (&spec.primitives, &spec.opaque);
+        let blend = |sorted: &Sorted| abuffer::resolve_pixels(scene, prims, opaque, sorted);
+        self.listed.get_or_init(|| Listed::of(&spec.sorted, blend))
+    }
+
+    /// Stage `packed`.
+    pub fn packed(&self, scene: &Scene, spec: &SpecRun) -> &Listed {
+        let (prims, opaque) = (&spec.primitives, &spec.opaque);
+        let blend = |sorted: &Sorted| layouts::packed(scene, prims, opaque, sorted);
+        self.packed.get_or_init(|| Listed::of(&spec.sorted, blend))
     }
 
     /// Stage `peel`, all layers.
