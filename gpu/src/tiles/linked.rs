@@ -18,7 +18,7 @@ use crate::lists::until_done;
 use crate::raster::{Need, Rasterizer, SATURATED};
 
 /// Of a pixel: opaque surface, picture, head, progress of sort and blend. Of a fragment: a node.
-const NEED: Need = Need {
+pub(super) const NEED: Need = Need {
     what: "linked",
     pixel: 2 * 4 + 16 + 4 + PROGRESS,
     node: NODE,
@@ -116,7 +116,9 @@ fn of_band(
     loop {
         room.with_nodes(&regions)?;
         time += attempt::submit(&room, &room.drawn("linked", 0, drawn)?)?;
-        let counted: Vec<Region> = rasterizer.gpu.read(room.buffers.get("regions"), regions.len())?;
+        let counted: Vec<Region> = rasterizer
+            .gpu
+            .read(room.buffers.get("regions"), regions.len())?;
         let needed: u64 = counted.iter().map(|r| u64::from(r.attempts)).sum();
         let full = |(seen, region): (&Region, &Region)| seen.attempts > region.capacity;
         if !counted.iter().zip(&regions).any(full) {
@@ -149,7 +151,9 @@ fn of_band(
     if let Some(longest) = inspect(&result.built) {
         let (sort, most) = ([room.sort_linked()?], ("linked", dispatches(longest)));
         let progress = room.buffers.get("progress");
-        time += until_done(rasterizer.gpu, progress, most, || attempt::submit(&room, &sort))?;
+        time += until_done(rasterizer.gpu, progress, most, || {
+            attempt::submit(&room, &sort)
+        })?;
         result.sorted = Some(nodes::lists(&room, band, &regions)?);
         for pass in room.blend_linked(longest, u32::MAX)? {
             time += attempt::submit(&room, &[pass])?;
@@ -195,9 +199,13 @@ impl Room<'_, '_> {
         let gpu = self.rasterizer.gpu;
         let pixels = u64::from(self.frame.width) * u64::from(self.frame.rows);
         let nodes = regions.last().map_or(0, |last| last.first + last.capacity);
-        self.buffers.set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
-        self.buffers.set("heads", gpu.storage("heads", 4 * pixels)?);
-        self.buffers.set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
+        for (name, bytes) in [
+            ("nodes", NODE * u64::from(nodes)),
+            ("heads", 4 * pixels),
+            ("progress", 4 + PROGRESS * pixels),
+        ] {
+            self.buffers.set(name, self.pool.storage(gpu, name, bytes)?);
+        }
         self.buffers.set("regions", gpu.upload("regions", regions)?);
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::pool::Pool;
 use super::{Tiled, lists, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -50,6 +51,8 @@ pub(super) struct Room<'r, 'g> {
     pub(super) lists: u32,
     /// All buffers by the names of variables.
     pub(super) buffers: Named,
+    /// Where most of them come from.
+    pub(super) pool: Pool,
     /// Triangles of each tile, while they are counted.
     in_tiles: wgpu::Buffer,
 }
@@ -58,7 +61,7 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Room for bins and lists, which are yet to be counted.
     pub(super) fn new(
         rasterizer: &'r Rasterizer<'g>,
-        band: Band,
+        (band, pool): (Band, Pool),
         frame: Frame,
     ) -> Result<Self, GpuError> {
         let gpu = rasterizer.gpu;
@@ -66,7 +69,8 @@ impl<'r, 'g> Room<'r, 'g> {
         let [across, down] = tiles(width, band);
         let (tiles, lists) = (across * down, lists(width, band));
         let pixels = band.pixels(rasterizer.size);
-        let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
+        let bytes = |what, bytes| pool.storage(gpu, what, bytes);
+        let words = |what, count: u32| bytes(what, 4 * u64::from(count));
         let buffers = vec![
             ("bins", words("offsets of tiles", tiles + 1)?),
             ("sums", words("sums of parts", tiles.div_ceil(TILE))?),
@@ -74,12 +78,12 @@ impl<'r, 'g> Room<'r, 'g> {
             // Both are made anew once it is known how many there are.
             ("binned", words("triangles in tiles", 0)?),
             ("listed", words("entries of lists", 0)?),
-            ("lists", gpu.storage("lists", LIST * u64::from(lists))?),
+            ("lists", bytes("lists", LIST * u64::from(lists))?),
             ("rows", words("rows of tiles", lists)?),
             ("longest", words("longest lists", lists + 3)?),
             ("counter", words("counter", 1)?),
             ("unfinished", words("unfinished", 1)?),
-            ("picture", gpu.storage("picture", 16 * u64::from(pixels))?),
+            ("picture", bytes("picture", 16 * u64::from(pixels))?),
         ];
         Ok(Self {
             in_tiles: words("triangles of tiles", tiles)?,
@@ -88,12 +92,14 @@ impl<'r, 'g> Room<'r, 'g> {
             tiles,
             lists,
             buffers: buffers.into(),
+            pool,
         })
     }
 
-    /// Bytes of all buffers.
-    pub(super) fn bytes(&self) -> u64 {
-        self.buffers.bytes() + self.in_tiles.size()
+    /// All buffers.
+    pub(super) fn held(&self) -> impl Iterator<Item = &wgpu::Buffer> {
+        let named = self.buffers.iter().map(|(_, buffer)| buffer);
+        named.chain([&self.in_tiles])
     }
 
     /// What the kernels found out of the lists, which hold so many entries. A kernel of a user's may
@@ -142,7 +148,10 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Counts the triangles of each tile, and where its bin begins.
     pub(super) fn count_bins(&self) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(0);
-        let others = [("counts", &self.in_tiles), ("offsets", self.buffers.get("bins"))];
+        let others = [
+            ("counts", &self.in_tiles),
+            ("offsets", self.buffers.get("bins")),
+        ];
         let small = self.pass_with("bin_count", tiled, tiled.items.div_ceil(WORKGROUP), &others)?;
         let small = small.after_clearing(self.in_tiles.clone());
         let mut passes = vec![
@@ -156,7 +165,10 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Fills the bins, which have room for so many triangles, and puts them in order.
     pub(super) fn fill_bins(&self, binned: u32) -> Result<Vec<Ready>, GpuError> {
         let tiled = self.of_triangles(binned);
-        let others = [("counts", &self.in_tiles), ("offsets", self.buffers.get("bins"))];
+        let others = [
+            ("counts", &self.in_tiles),
+            ("offsets", self.buffers.get("bins")),
+        ];
         Ok(vec![
             self.pass_with("bin_fill", tiled, tiled.items.div_ceil(WORKGROUP), &others)?,
             self.pass_with("bin_fill_large", tiled, tiled.groups, &others)?,

@@ -3,13 +3,14 @@
 use triptych_spec::tiles::ROWS;
 
 use super::attempt::BINNED_MAX;
+use super::pool::Pool;
 use super::room::Room;
 use super::{DRAWN, Options, Region, attempt};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::Rasterizer;
-use crate::timer::Timer;
+use crate::timer::Queries;
 
 /// What is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,29 +29,30 @@ pub enum Span {
     Local(u32),
 }
 
-/// A whole target that is set up.
-pub struct Timed<'r, 'g> {
-    room: Room<'r, 'g>,
+/// A band that is set up.
+pub(super) struct Timed<'r, 'g> {
+    pub(super) room: Room<'r, 'g>,
     spans: Vec<(Span, Vec<Ready>)>,
     /// Triangles in bins.
-    pub binned: u32,
+    pub(super) binned: u32,
     /// Fragments in lists.
-    pub fragments: u32,
+    pub(super) fragments: u32,
     /// Tiles that [`Self::local`] left to lists; lists that [`Self::linked`] has to sort.
-    pub left: u32,
+    pub(super) left: u32,
 }
 
 impl<'r, 'g> Timed<'r, 'g> {
-    /// Sets up a target, and pictures of these numbers of layers.
+    /// Sets up a band, and pictures of these numbers of layers.
     ///
     /// # Errors
     /// Limits by name, WGSL errors, and whatever the device reports.
-    pub fn new(
+    pub(super) fn new(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
+        at: (Band, Pool),
     ) -> Result<Self, GpuError> {
-        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        let (mut timed, drawn) = Self::bins(rasterizer, options, at)?;
         timed.lists(drawn, layers)?;
         Ok(timed)
     }
@@ -59,12 +61,13 @@ impl<'r, 'g> Timed<'r, 'g> {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn local(
+    pub(super) fn local(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
+        at: (Band, Pool),
     ) -> Result<Self, GpuError> {
-        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        let (mut timed, drawn) = Self::bins(rasterizer, options, at)?;
         timed.room.with_digests()?;
         let mut locals = Vec::new();
         for n in layers {
@@ -97,12 +100,13 @@ impl<'r, 'g> Timed<'r, 'g> {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn linked(
+    pub(super) fn linked(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
+        at: (Band, Pool),
     ) -> Result<Self, GpuError> {
-        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        let (mut timed, drawn) = Self::bins(rasterizer, options, at)?;
         let room = &mut timed.room;
         let (regions, passes) = room.link_exactly(drawn)?;
         timed.fragments = regions.iter().map(|r| r.attempts).sum();
@@ -123,12 +127,13 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(timed)
     }
 
-    /// A target with triangles in bins; the longest bin, and how many of it a dispatch draws.
+    /// A band with triangles in bins; the longest bin, and how many of it a dispatch draws.
     fn bins(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
+        at: (Band, Pool),
     ) -> Result<(Self, (u32, u32)), GpuError> {
-        let mut room = attempt::room(rasterizer, options, Band::whole(rasterizer.size))?;
+        let mut room = attempt::room_in(rasterizer, options, at)?;
         let (bins, _) = attempt::count_bins(&room)?;
         let binned = bins.last().copied().unwrap_or(0);
         if binned > BINNED_MAX {
@@ -160,10 +165,12 @@ impl<'r, 'g> Timed<'r, 'g> {
         let place = room.place_lists(drawn)?;
         attempt::submit(room, &place)?;
         let fragments = gpu.word(room.buffers.get("counter"), 0)?;
-        let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
-        room.buffers.set("listed", entries()?);
+        let bytes = 8 * u64::from(fragments);
+        let listed = room.pool.storage(gpu, "entries of lists", bytes)?;
+        room.buffers.set("listed", listed);
         if room.longest(fragments)?.length > ROWS {
-            room.buffers.set("merged", entries()?);
+            let merged = room.pool.storage(gpu, "entries that are merged", bytes)?;
+            room.buffers.set("merged", merged);
         }
         let fill = room.drawn("jagged_fill", fragments, drawn)?;
         attempt::submit(room, &fill)?;
@@ -180,13 +187,8 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(())
     }
 
-    /// Bytes of all buffers, but for the triangles.
-    pub fn bytes(&self) -> u64 {
-        self.room.bytes()
-    }
-
     /// The parts, in the order in which they run.
-    pub fn spans(&self) -> impl Iterator<Item = Span> {
+    pub(super) fn spans(&self) -> impl Iterator<Item = Span> {
         self.spans.iter().map(|(span, _)| *span)
     }
 
@@ -194,7 +196,10 @@ impl<'r, 'g> Timed<'r, 'g> {
     ///
     /// # Errors
     /// Whatever the device reports.
-    pub fn pictures(&self, mut show: impl FnMut(u32, Vec<[f32; 3]>)) -> Result<(), GpuError> {
+    pub(super) fn pictures(
+        &self,
+        mut show: impl FnMut(u32, Vec<[f32; 3]>),
+    ) -> Result<(), GpuError> {
         for (span, passes) in &self.spans {
             attempt::submit(&self.room, passes)?;
             match span {
@@ -208,19 +213,18 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(())
     }
 
-    /// Runs every part once, and gives the seconds of each.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError> {
-        let count = u32::try_from(self.spans.len()).expect("a few");
-        let gpu = self.room.rasterizer.gpu;
-        timer.time(gpu, 0..count, |span, encoder, queries| {
-            let passes = &self.spans[span as usize].1;
-            for (at, pass) in passes.iter().enumerate() {
-                let writes = queries.and_then(|q| q.writes(span, at, passes.len()));
-                pass.record(encoder, writes);
-            }
-        })
+    /// Records a part, which has this number among a timer's.
+    pub(super) fn record(
+        &self,
+        part: usize,
+        number: u32,
+        encoder: &mut wgpu::CommandEncoder,
+        queries: Option<&Queries>,
+    ) {
+        let passes = &self.spans[part].1;
+        for (at, pass) in passes.iter().enumerate() {
+            let writes = queries.and_then(|q| q.writes(number, at, passes.len()));
+            pass.record(encoder, writes);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The same frame by tiles: first its pictures are compared, then it is timed.
 
-use triptych_gpu::tiles::{self, Span, Timed};
+use triptych_gpu::tiles::{self, Banded, Span, Way};
 use triptych_gpu::timer::Timer;
 
 use super::Method;
@@ -14,7 +14,7 @@ use crate::replay::tiles::longest;
 pub(super) struct ByTiles<'r> {
     method: Method,
     grid: &'r Grid,
-    timed: Timed<'r, 'r>,
+    timed: Banded<'r, 'r>,
     timer: Timer,
     spans: Vec<Span>,
     errors: Vec<(u32, Error)>,
@@ -48,23 +48,24 @@ impl<'r> ByTiles<'r> {
                 grid.sorted(label, band.band, lists)?;
             }
         }
-        let make = match method {
-            Method::Linked => Timed::linked,
-            Method::Local => Timed::local,
-            _ => Timed::new,
+        let way = match method {
+            Method::Linked => Way::Linked,
+            Method::Local => Way::Local,
+            _ => Way::Runs,
         };
-        let timed = make(rasterizer, &options, &grid.shown())?;
-        let (seen, must) = (u64::from(timed.fragments), grid.fragments());
+        let shown = grid.shown();
+        let pictures = (way, &shown[..]);
+        let timed = Banded::new(rasterizer, &options, pictures, &grid.rows, start.budget)?;
+        let (seen, must) = (timed.fragments(), grid.fragments());
         if seen != must && method != Method::Local {
             let words = format!("{label}: tiles count {seen} fragments, must be {must}");
             return Err(Refusal::Wrong(words));
         }
-        let spans: Vec<Span> = timed.spans().collect();
-        let count = u32::try_from(spans.len()).expect("a few parts");
+        let spans = timed.parts().to_vec();
         let mut tiles = Self {
             method,
             grid,
-            timer: Timer::new(rasterizer.gpu, start.clock, count)?,
+            timer: Timer::new(rasterizer.gpu, start.clock, timed.spans())?,
             timed,
             spans,
             errors: Vec::new(),
@@ -118,7 +119,7 @@ impl<'r> ByTiles<'r> {
             let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
             let mut parts = surfaces.parts.clone();
             parts.extend(spans.map(|(at, span)| (name(*span), seconds(at))));
-            let work = counts.by_tiles(self.timed.binned.into(), *layers, self.method);
+            let work = counts.by_tiles(self.timed.binned(), *layers, self.method);
             Measured {
                 method: self.method,
                 layers: *layers,
