@@ -188,9 +188,12 @@ impl Run<'_, '_> {
         longest: u32,
         b: &Buffers,
     ) -> Result<Duration, GpuError> {
-        until_done(self.gpu(), &b.progress, (stage, dispatches(longest)), || {
-            per_pixel(self.rasterizer, file, stage, frame, &b.named())
-        })
+        until_done(
+            self.gpu(),
+            &b.progress,
+            (stage, dispatches(longest)),
+            || per_pixel(self.rasterizer, file, stage, frame, &b.named()),
+        )
     }
 
     fn lists(&self, b: &Buffers) -> Result<Lists, GpuError> {

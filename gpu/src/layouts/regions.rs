@@ -77,7 +77,12 @@ fn until_done(
     longest: u32,
 ) -> Result<Duration, GpuError> {
     let groups = room.pixels().div_ceil(WORKGROUP);
-    let step = [Step::Other(room.pass_of("abuffer", entry, room.listing, groups)?)];
+    let step = [Step::Other(room.pass_of(
+        "abuffer",
+        entry,
+        room.listing,
+        groups,
+    )?)];
     let most = (entry, dispatches(longest));
     let progress = room.buffers.get("progress");
     lists::until_done(room.rasterizer.gpu, progress, most, || room.submit(&step))

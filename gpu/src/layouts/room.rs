@@ -195,7 +195,11 @@ impl<'r, 'g> Room<'r, 'g> {
     /// The picture; empty where pixels have several samples.
     pub(super) fn picture(&self) -> Result<Vec<[f32; 3]>, GpuError> {
         match self.is_shown() {
-            true => image(self.rasterizer.gpu, self.buffers.get("picture"), self.pixels()),
+            true => image(
+                self.rasterizer.gpu,
+                self.buffers.get("picture"),
+                self.pixels(),
+            ),
             false => Ok(Vec::new()),
         }
     }
