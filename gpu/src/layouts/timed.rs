@@ -176,6 +176,17 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok((lists, self.room.picture()?))
     }
 
+    /// Runs every part once, one after another, and gives the picture.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn picture(&self) -> Result<Vec<[f32; 3]>, GpuError> {
+        for span in 0..self.spans.len() {
+            self.run(span)?;
+        }
+        self.room.picture()
+    }
+
     /// Runs every part once, and gives the seconds of each.
     ///
     /// # Errors
@@ -242,7 +253,8 @@ fn read(room: &Room<'_, '_>) -> Result<Lists, GpuError> {
     match room.layout {
         Layout::Bucket => bucket::lists(room),
         Layout::Precalc => {
-            let offsets: Vec<u32> = gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
+            let offsets: Vec<u32> =
+                gpu.read(room.buffers.get("offsets"), room.pixels() as usize + 1)?;
             precalc::linked(room, &offsets, room.frame.capacity)
         }
         Layout::Packed => packed::lists(room),
