@@ -76,7 +76,7 @@ impl Grid {
     }
 
     /// The same where so many fragments are the most that are held.
-    fn holding(
+    pub(super) fn holding(
         most: u64,
         scene: &Scene,
         plan: &Plan,

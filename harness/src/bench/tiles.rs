@@ -176,3 +176,6 @@ fn name(span: Span) -> &'static str {
         Span::Local(_) => "local",
     }
 }
+
+#[cfg(test)]
+mod tests;
