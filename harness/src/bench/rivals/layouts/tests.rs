@@ -16,9 +16,9 @@ use crate::plan::Plan;
 use crate::scene::load;
 
 /// What is wrong with each layout of a scene on a device, as these kernels make it.
-fn wrong(gpu: &Gpu, sources: Sources) -> Vec<(Method, String)> {
+fn wrong(gpu: &Gpu, scene: &str, sources: Sources) -> Vec<(Method, String)> {
     let loaded =
-        load(&corpus::root().join("abuffer/mixed/scene.toml")).unwrap_or_else(|e| panic!("{e}"));
+        load(&corpus::root().join(scene).join("scene.toml")).unwrap_or_else(|e| panic!("{e}"));
     let (scene, plan) = (&loaded.scene, Plan::new(&loaded.scene, true));
     let mut grid = Grid::new(scene, &plan, (8, Samples::ONE)).expect("a small scene");
     grid.draw(scene, Some(&[]));
@@ -77,8 +77,8 @@ fn a_layout_that_is_wrong_is_named() {
     let device = adapters(wgpu::Backends::VULKAN).into_iter().next();
     let gpu = Gpu::open(&device.expect("no adapter: `./x setup` installs two")).expect("a device");
     let ships = Sources::shipped(false);
-    assert_eq!(wrong(&gpu, ships.clone()), []);
-    let names = |file, find, replace| {
+    assert_eq!(wrong(&gpu, "abuffer/mixed", ships.clone()), []);
+    let names = |scene, (file, find, replace): (&str, &str, &str)| {
         let found = wrong(
             &gpu,
             ships
@@ -96,23 +96,21 @@ fn a_layout_that_is_wrong_is_named() {
         [Method::Precalc, Method::Bucket],
         [Method::Packed, Method::Regions],
     ];
-    let backwards = "return a.x > b.x || (a.x == b.x && a.y < b.y);";
-    let forwards = "return a.x < b.x || (a.x == b.x && a.y < b.y);";
-    assert_eq!(names("layouts", forwards, backwards), arrays, "order");
-    assert_eq!(
-        names("packed", "* 255.0 + 0.5", "* 254.0 + 0.5"),
-        linked[..1],
-        "bytes"
+    // Of one colour, so that lists alone tell orders apart.
+    let order = (
+        "layouts",
+        "return a.x < b.x || (a.x == b.x && a.y < b.y);",
+        "return a.x > b.x || (a.x == b.x && a.y < b.y);",
     );
-    let colour = (
+    assert_eq!(names("abuffer/quads", order), arrays, "order");
+    let bytes = ("packed", "* 255.0 + 0.5", "* 254.0 + 0.5");
+    assert_eq!(names("abuffer/mixed", bytes), linked[..1], "bytes");
+    let colours = (
+        "regions",
         "colours[address] = faces[fragment.prim];",
         "colours[address] = faces[0u];",
     );
-    assert_eq!(names("regions", colour.0, colour.1), linked[1..], "colours");
-    let face = ("faces[slot.y >> MASK_BITS]", "faces[0u]");
-    assert_eq!(
-        names("ordered", face.0, face.1),
-        [Method::Ordered],
-        "layers"
-    );
+    assert_eq!(names("abuffer/mixed", colours), linked[1..], "colours");
+    let layers = ("ordered", "faces[slot.y >> MASK_BITS]", "faces[0u]");
+    assert_eq!(names("abuffer/mixed", layers), [Method::Ordered], "layers");
 }
