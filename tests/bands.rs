@@ -1,6 +1,8 @@
 //! Frames that an adapter cannot bind at once, or has no memory for, run in bands of
 //! rows, with the same result; what does not fit even so is refused by name.
 
+#[path = "bands/stages.rs"]
+mod stages;
 #[path = "bands/tiles.rs"]
 mod tiles;
 #[path = "bands/timed.rs"]

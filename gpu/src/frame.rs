@@ -73,7 +73,12 @@ impl Band {
 
     /// The two halves of a band of two rows or more.
     pub fn halves(self) -> Option<[Self; 2]> {
-        let upper = self.rows / 2;
+        self.halves_in(1)
+    }
+
+    /// The same of a band with more than `side` rows, the upper one in whole multiples of them.
+    pub fn halves_in(self, side: u32) -> Option<[Self; 2]> {
+        let upper = self.rows.div_ceil(side) / 2 * side;
         (upper > 0).then_some([
             Self {
                 first: self.first,
@@ -133,5 +138,24 @@ impl Frame {
             places,
             ..Self::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Band;
+
+    #[test]
+    fn halves_are_whole_multiples() {
+        let halves = |rows, side| {
+            let band = Band { first: 3, rows };
+            let halves = band.halves_in(side);
+            halves.map(|halves| halves.map(|half| [half.first, half.rows]))
+        };
+        assert_eq!(halves(9, 1), Some([[3, 4], [7, 5]]));
+        assert_eq!(halves(1, 1), None);
+        assert_eq!(halves(9, 8), Some([[3, 8], [11, 1]]));
+        assert_eq!(halves(8, 8), None);
+        assert_eq!(halves(41, 8), Some([[3, 24], [27, 17]]));
     }
 }

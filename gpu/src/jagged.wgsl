@@ -140,6 +140,7 @@ fn count_lists(tile: u32, lane: u32) {
     let list = tile * WORKGROUP + lane;
     if is_left(tile) {
         lists[list].length = draw(tile, lane, false).count;
+        lists[list].start = 0u;
     } else {
         lists[list].start = NO_LIST;
     }

@@ -4,10 +4,12 @@
 //! were laid out. Twin: `spec/src/tiles.rs`.
 
 mod attempt;
+mod banded;
 mod linked;
 mod lists;
 mod local;
 mod nodes;
+mod pool;
 mod room;
 mod rows;
 mod timed;
@@ -22,10 +24,11 @@ use crate::abuffer::BandResult;
 use crate::error::GpuError;
 use crate::frame::{Band, WORKGROUP};
 use crate::raster::Rasterizer;
+pub use banded::{Banded, Way};
 pub use linked::{Linked, Region, run as run_linked};
 pub use local::{FINISHED, Local, run as run_local};
 pub use rows::{CONTIGUOUS, IN_ORDER, List};
-pub use timed::{Span, Timed};
+pub use timed::Span;
 
 /// Triangles of a tile that one dispatch draws. llvmpipe leaves every loop of an invocation after
 /// 65,535 iterations in all; a triangle takes one, 64 of them one more.

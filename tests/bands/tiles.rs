@@ -1,72 +1,88 @@
-//! Lists by tiles and in other layouts, in bands whose first rows are no tile's.
+//! Frames by tiles that are timed: in bands of whole tiles, in the same buffers one after another.
 
-use triptych_gpu::tiles::{DRAWN, Options as Tiles, run as run_tiles};
-use triptych_harness::plan::Asked;
-use triptych_harness::replay::{Extent, layouts, tiles};
-use triptych_spec::tiles::SIDE;
+use triptych_gpu::raster::{Path, Rasterizer};
+use triptych_gpu::tiles::{Banded, DRAWN, Options, Way};
+use triptych_harness::plan::Plan;
+use triptych_harness::replay::spec::SpecRun;
+use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
-use super::*;
+use super::{devices, load};
 
-/// Scenes, and adapters with room for some rows, and for fewer nodes than they need.
-const FEW: [(&str, Small); 2] = [
-    ("abuffer/quads", |gpu| gpu.restrict_memory(60_000)),
-    ("abuffer/msaa-thirds", |gpu| gpu.restrict_bindings(80_000)),
-];
-
-/// Whether a band begins within a tile of the whole target.
-fn is_split(leg: &GpuLeg<'_>) -> bool {
-    let options = Tiles {
-        opaque: &leg.spec.value.opaque,
-        depth_test: leg.plan.depth_test,
-        background: leg.scene.background,
-        capacity: None,
-        drawn: DRAWN,
-    };
-    let rasterizer = leg.rasterizer().expect("few triangles");
-    let drawn = run_tiles(&rasterizer, options).expect("it runs");
-    drawn.bins.iter().any(|(band, ..)| band.first % SIDE != 0)
+/// What came of a frame: the bits of its pictures by numbers of layers, fragments, triangles in bins,
+/// tiles or lists that were left.
+#[derive(PartialEq)]
+struct Made {
+    pictures: Vec<(u32, Vec<[u32; 3]>)>,
+    counts: [u64; 3],
 }
 
+fn made(timed: &Banded<'_, '_>) -> Made {
+    let mut pictures = Vec::new();
+    let seen = timed.pictures(|layers, picture| {
+        let bits = picture.iter().map(|pixel| pixel.map(f32::to_bits));
+        pictures.push((layers, bits.collect()));
+    });
+    seen.expect("it runs");
+    Made {
+        pictures,
+        counts: [timed.fragments(), timed.binned(), timed.left()],
+    }
+}
+
+/// A frame by tiles that is timed in bands has, bit for bit, the pictures of one that is made at once, and
+/// holds no more than it may; also where tiles without lists leave some to lists, in some bands alone.
 #[test]
-fn tiles_and_layouts_have_the_same_lists_and_pictures_in_bands() {
-    let asked = Asked {
-        rivals: true,
-        ..Asked::default()
-    };
-    for (name, small) in FEW {
-        let loaded = load(name);
-        let scene = &loaded.scene;
-        let plan = Plan::asking(scene, true, asked);
-        for adapter in &adapters(small) {
-            let snapped = primitives(scene, adapter.bits(Path::Compute));
-            let run = SpecRun::new(scene, snapped, &plan).expect("a small scene");
-            let leg = GpuLeg {
-                adapter,
-                path: Path::Compute,
-                scene,
-                spec: &Observed::new("spec", run),
-                plan: &plan,
+fn bands_of_tiles_give_the_bytes_of_the_whole() {
+    let loaded = load("abuffer/hidden");
+    let (scene, plan) = (&loaded.scene, Plan::new(&loaded.scene, true));
+    let run = SpecRun::new(scene, primitives(scene, SUBPIXEL_BITS), &plan).expect("a small scene");
+    let ends = run.sorted.offsets.iter().step_by(scene.size.width as usize);
+    let rows: Vec<u32> = ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect();
+    for (gpu, kernels) in devices(|_| {}) {
+        let rasterizer =
+            Rasterizer::new(&gpu, &kernels, Path::Compute, &run.primitives, &run.faces)
+                .expect("a small scene");
+        for (way, drawn) in [
+            (Way::Runs, DRAWN),
+            (Way::Linked, DRAWN),
+            (Way::Local, DRAWN),
+            (Way::Local, 4),
+        ] {
+            let at = format!("{}, {way:?}, {drawn} triangles", gpu.name);
+            let options = Options {
+                opaque: &run.opaque,
+                depth_test: plan.depth_test,
+                background: scene.background,
                 capacity: None,
-                from: From::Cover,
+                drawn,
             };
-            let words = format!("{name}, {}", leg.label());
-            assert!(is_split(&leg), "{words}: no band begins within a tile");
-            let mut rows = Rows::new(name, "abuffer");
-            tiles::run(&leg, Extent::All, &mut rows).expect("it runs");
-            // Arrays are put in order in bands that fit a binding, however much memory there is. SwiftShader
-            // takes its time over layouts: what is tried here is the host's.
-            let with_layouts = name != "abuffer/quads" && adapter.native.is_some();
-            if with_layouts {
-                layouts::run(&leg, Extent::All, &mut rows).expect("it runs");
+            let within = |budget| {
+                let timed = Banded::new(&rasterizer, &options, (way, &[1, 64]), &rows, budget);
+                timed.expect("it fits in bands")
+            };
+            let whole = within(u64::MAX);
+            assert_eq!(whole.bands(), 1, "{at}");
+            if way == Way::Local {
+                assert_eq!(whole.left() > 0, drawn == 4, "{at}: {} left", whole.left());
             }
-            for row in &rows.rows {
-                // Which region is fullest depends on how work is shared out: a row may have no room.
-                if row.stage != "regions" || row.skipped.is_none() {
-                    assert_eq!(row.verdict(), Verdict::Agree, "{words}: {row:#?}");
-                }
-            }
-            let stages = if with_layouts { 11 } else { 5 };
-            assert_eq!(rows.rows.len(), stages, "{words}: a row for each stage");
+            // More than a third: surfaces and large triangles are held for all of it.
+            let budget = whole.bytes() * 2 / 5;
+            let parts = within(budget);
+            let bands = parts.bands();
+            assert!(bands > 2, "{at}: {bands} bands only: it was not felt");
+            assert!(
+                parts.bytes() <= budget,
+                "{at}: {} of {budget} bytes",
+                parts.bytes()
+            );
+            let (whole, parts) = (made(&whole), made(&parts));
+            assert_eq!(whole.pictures.len(), 2, "{at}");
+            assert_ne!(
+                whole.pictures[0].1, whole.pictures[1].1,
+                "{at}: one layer is another picture"
+            );
+            assert_eq!(parts.counts, whole.counts, "{at}");
+            assert!(parts == whole, "{at}: pictures");
         }
     }
 }

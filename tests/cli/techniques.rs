@@ -56,7 +56,7 @@ fn techniques_samples_and_bands_are_measured() {
         let banded = ["insertion", "sort"].contains(&row["method"]);
         assert_eq!(number("bands") > 1.0, banded, "{row:?}");
         // These may be right by chance, as the quads come in the order of their depths.
-        if !["alpha", "weighted"].contains(&row["method"]) {
+        if !["alpha", "weighted", "packed"].contains(&row["method"]) {
             let exact = number("psnr_db") > 100.0;
             assert_eq!(exact, row["all"] == "true", "{row:?}");
         }
@@ -73,4 +73,44 @@ fn techniques_samples_and_bands_are_measured() {
         ran.stdout
     );
     assert!(ran.stdout.contains(" bands "), "{}", ran.stdout);
+    layouts_are_measured(&rows);
+    assert!(
+        ran.stdout.contains("\nLayouts and formats of nodes: "),
+        "{}",
+        ran.stdout
+    );
+    assert!(ran.stdout.contains("8: met"), "{}", ran.stdout);
+    let svg = fs::read_to_string(place.root.join("reports/out/bench/abuffer.svg"));
+    let svg = svg.expect("a front was written");
+    assert!(
+        svg.contains("all layers, lists in several layouts"),
+        "bars of layouts"
+    );
+}
+
+/// Every layout on both paths, with its bytes, and building apart from what is made of the lists.
+fn layouts_are_measured(rows: &[BTreeMap<&str, &str>]) {
+    for (method, bytes) in [
+        ("regions", "32"),
+        ("packed", "16"),
+        ("ordered", "12"),
+        ("precalc", "8"),
+        ("bucket", "8"),
+    ] {
+        for path in ["/fragment", "/compute"] {
+            let is = |r: &&BTreeMap<&str, &str>| r["leg"].ends_with(path) && r["method"] == method;
+            let own: Vec<_> = rows.iter().filter(is).collect();
+            let [own] = own[..] else {
+                panic!("{} rows of {method} on {path}", own.len());
+            };
+            assert_eq!(own["bytes_per_fragment"], bytes, "{method}");
+            for part in ["build_ms", "resolve_ms"] {
+                let ms: f64 = own[part].parse().unwrap_or(0.0);
+                assert!(ms > 0.0, "{part}: {own:?}");
+            }
+            // A byte a channel is an approximation, whose error is told.
+            let psnr: f64 = own["psnr_db"].parse().unwrap_or(f64::NAN);
+            assert_eq!((40.0..100.0).contains(&psnr), method == "packed", "{own:?}");
+        }
+    }
 }

@@ -54,8 +54,9 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
     // capacity, all of which the host has made the buffers for; and they follow no link
     // that the host has not certified for lists of the same fragments in the same buffers. Entries of
     // tiles and of runs are read where the same kernels have counted and filled them, from the same
-    // triangles, in bins and lists whose capacity is that of the count; links of `linked` and of other
-    // layouts are certified; packed and ordered ones lead nowhere but to nodes that a counter handed out.
+    // triangles, in bins and lists whose capacity is that of the count; links of other layouts are
+    // certified; those of `linked`, packed and ordered lists lead nowhere but to nodes that a counter
+    // handed out.
     unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
 }
 

@@ -37,6 +37,15 @@ pub fn of_node(layout: Layout) -> u64 {
     }
 }
 
+/// Bytes of each node or entry where a list has `longest`: such as are merged from one buffer to
+/// another lie in two.
+pub fn of_fragment(layout: Layout, longest: u32) -> u64 {
+    match layout {
+        Layout::Bucket | Layout::Precalc if longest > crate::lists::LONG => 2 * ENTRY,
+        _ => of_node(layout),
+    }
+}
+
 /// Bytes of a buffer, of which none is shorter.
 fn buffer(bytes: u64) -> u64 {
     bytes.max(16)
@@ -60,11 +69,6 @@ pub fn peak(
         // An invocation may find the node unneeded that it took.
         Layout::Ordered => 2 * fragments,
     };
-    // The longest lists are merged from one buffer to another.
-    let merged = match layout {
-        Layout::Bucket | Layout::Precalc if longest > crate::lists::LONG => ENTRY * nodes,
-        _ => 0,
-    };
     let word = buffer(4);
     let few = match layout {
         // Words that kernels bind.
@@ -76,5 +80,5 @@ pub fn peak(
         Layout::Regions => 4 * u64::from(REGIONS) + 4,
         Layout::Ordered => 2 * word,
     };
-    of_pixel(layout, samples) * pixels + of_node(layout) * nodes + merged + few
+    of_pixel(layout, samples) * pixels + of_fragment(layout, longest) * nodes + few
 }

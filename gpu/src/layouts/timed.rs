@@ -153,6 +153,17 @@ impl<'r, 'g> Timed<'r, 'g> {
         blend.expect("every layout has a picture")
     }
 
+    /// Runs every part once, one after another, up to the picture of all layers, and gives that.
+    ///
+    /// # Errors
+    /// Whatever the device reports.
+    pub fn picture(&self) -> Result<Vec<[f32; 3]>, GpuError> {
+        for span in 0..=self.blend() {
+            self.run(span)?;
+        }
+        self.room.picture()
+    }
+
     /// Runs every part once, and gives the seconds of each.
     ///
     /// # Errors

@@ -50,6 +50,8 @@ pub struct Attempts {
     capacity: u32,
     /// Nodes before each row, and in all, where they are known beforehand.
     known: Option<Vec<u32>>,
+    /// Rows of a band are multiples of this, but for those at the end.
+    side: u32,
 }
 
 impl Attempts {
@@ -65,7 +67,14 @@ impl Attempts {
             bands: vec![Band::whole(size)],
             capacity: capacity.unwrap_or(2 * size.width * size.height),
             known: None,
+            side: 1,
         }
+    }
+
+    /// The same in bands of whole multiples of so many rows.
+    #[must_use]
+    pub fn in_rows_of(self, side: u32) -> Self {
+        Self { side, ..self }
     }
 
     /// The same with attempts at no more than so many bytes.
@@ -130,7 +139,7 @@ impl Attempts {
 
     /// Puts the halves of a band in its place; false if it is a single row.
     fn split(&mut self, band: Band) -> bool {
-        let halves = band.halves();
+        let halves = band.halves_in(self.side);
         if let Some([upper, lower]) = halves {
             self.bands.extend([lower, upper]);
         }

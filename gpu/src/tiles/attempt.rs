@@ -6,6 +6,7 @@ use triptych_spec::abuffer::Lists;
 use triptych_spec::layouts::PRIMS_MAX;
 use triptych_spec::tiles::ROWS;
 
+use super::pool::Pool;
 use super::room::Room;
 use super::rows;
 use super::{DRAWN, Drawn, Options, Times};
@@ -100,6 +101,15 @@ pub(super) fn room<'r, 'g>(
     options: &Options<'_>,
     band: Band,
 ) -> Result<Room<'r, 'g>, GpuError> {
+    room_in(rasterizer, options, (band, Pool::default()))
+}
+
+/// The same with buffers that others had.
+pub(super) fn room_in<'r, 'g>(
+    rasterizer: &'r Rasterizer<'g>,
+    options: &Options<'_>,
+    (band, pool): (Band, Pool),
+) -> Result<Room<'r, 'g>, GpuError> {
     if rasterizer.samples.count() > 1 && rasterizer.prims() > PRIMS_MAX {
         return Err(GpuError::Limit {
             adapter: rasterizer.gpu.name.clone(),
@@ -114,7 +124,7 @@ pub(super) fn room<'r, 'g>(
         background: [r, g, b, 1.0],
         ..rasterizer.frame(band)
     };
-    let mut room = Room::new(rasterizer, band, frame)?;
+    let mut room = Room::new(rasterizer, (band, pool), frame)?;
     let surfaces = Surfaces::upload(rasterizer, options.opaque, band)?;
     for (name, buffer) in surfaces.named() {
         room.buffers.set(name, buffer.clone());
@@ -133,7 +143,8 @@ pub(super) fn count_bins(room: &Room<'_, '_>) -> Result<(Vec<u32>, Duration), Gp
 /// Puts them in bins.
 pub(super) fn fill_bins(room: &mut Room<'_, '_>, binned: u32) -> Result<Duration, GpuError> {
     let bytes = 4 * u64::from(binned);
-    let bins = room.rasterizer.gpu.storage("triangles in tiles", bytes)?;
+    let gpu = room.rasterizer.gpu;
+    let bins = room.pool.storage(gpu, "triangles in tiles", bytes)?;
     room.buffers.set("binned", bins);
     submit(room, &room.fill_bins(binned)?)
 }

@@ -19,7 +19,7 @@ use crate::raster::{Need, Rasterizer, SATURATED};
 
 /// Of a sample: opaque surface, picture. Of a pixel: head, progress of sort and blend. Of a fragment: a
 /// node.
-fn need(rasterizer: &Rasterizer<'_>) -> Need {
+pub(super) fn need(rasterizer: &Rasterizer<'_>) -> Need {
     let samples = u64::from(rasterizer.samples.count());
     let largest = (PROGRESS + 4).max(COLOUR * samples);
     Need {
@@ -207,11 +207,13 @@ impl Room<'_, '_> {
         let gpu = self.rasterizer.gpu;
         let pixels = u64::from(self.frame.width) * u64::from(self.frame.rows);
         let nodes = regions.last().map_or(0, |last| last.first + last.capacity);
-        self.buffers
-            .set("nodes", gpu.storage("nodes", NODE * u64::from(nodes))?);
-        self.buffers.set("heads", gpu.storage("heads", 4 * pixels)?);
-        self.buffers
-            .set("progress", gpu.storage("progress", 4 + PROGRESS * pixels)?);
+        for (name, bytes) in [
+            ("nodes", NODE * u64::from(nodes)),
+            ("heads", 4 * pixels),
+            ("progress", 4 + PROGRESS * pixels),
+        ] {
+            self.buffers.set(name, self.pool.storage(gpu, name, bytes)?);
+        }
         self.buffers.set("regions", gpu.upload("regions", regions)?);
         Ok(())
     }

@@ -70,7 +70,8 @@ impl Room<'_, '_> {
     /// Makes room for digests.
     pub(super) fn with_digests(&mut self) -> Result<(), GpuError> {
         let bytes = 4 + 8 * u64::from(self.frame.width) * u64::from(self.frame.rows);
-        let digests = self.rasterizer.gpu.storage("digests", bytes)?;
+        let gpu = self.rasterizer.gpu;
+        let digests = self.pool.storage(gpu, "digests", bytes)?;
         self.buffers.set("digests", digests);
         Ok(())
     }

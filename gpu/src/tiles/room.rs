@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::tiles::SIDE;
 
+use super::pool::Pool;
 use super::{Tiled, lists, tiles};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
@@ -65,6 +66,8 @@ pub(super) struct Room<'r, 'g> {
     pub(super) lists: u32,
     /// All buffers by the names of variables.
     pub(super) buffers: Named,
+    /// Where most of them come from.
+    pub(super) pool: Pool,
     /// Triangles of each tile, while they are counted.
     in_tiles: wgpu::Buffer,
 }
@@ -73,7 +76,7 @@ impl<'r, 'g> Room<'r, 'g> {
     /// Room for bins and lists, which are yet to be counted.
     pub(super) fn new(
         rasterizer: &'r Rasterizer<'g>,
-        band: Band,
+        (band, pool): (Band, Pool),
         frame: Frame,
     ) -> Result<Self, GpuError> {
         let gpu = rasterizer.gpu;
@@ -81,7 +84,8 @@ impl<'r, 'g> Room<'r, 'g> {
         let [across, down] = tiles(width, band);
         let (tiles, lists) = (across * down, lists(width, band));
         let samples = rasterizer.samples.count() * band.pixels(rasterizer.size);
-        let words = |what, count: u32| gpu.storage(what, 4 * u64::from(count));
+        let bytes = |what, bytes| pool.storage(gpu, what, bytes);
+        let words = |what, count: u32| bytes(what, 4 * u64::from(count));
         let buffers = vec![
             ("bins", words("offsets of tiles", tiles + 1)?),
             ("sums", words("sums of parts", tiles.div_ceil(TILE))?),
@@ -89,17 +93,14 @@ impl<'r, 'g> Room<'r, 'g> {
             // Both are made anew once it is known how many there are.
             ("binned", words("triangles in tiles", 0)?),
             ("listed", words("entries of lists", 0)?),
-            ("lists", gpu.storage("lists", LIST * u64::from(lists))?),
+            ("lists", bytes("lists", LIST * u64::from(lists))?),
             ("rows", words("rows of tiles", lists)?),
             ("longest", words("longest lists", lists + 3)?),
             ("counter", words("counter", 1)?),
             ("unfinished", words("unfinished", 1)?),
-            // Where all tiles have lists, there are no digests.
-            ("digests", words("digests", 1 + 2)?),
-            (
-                "picture",
-                gpu.storage("picture", COLOUR * u64::from(samples))?,
-            ),
+            // Where all tiles have lists, there is one digest, of zeros.
+            ("digests", gpu.storage("digests", 12)?),
+            ("picture", bytes("picture", COLOUR * u64::from(samples))?),
         ];
         Ok(Self {
             in_tiles: words("triangles of tiles", tiles)?,
@@ -108,12 +109,14 @@ impl<'r, 'g> Room<'r, 'g> {
             tiles,
             lists,
             buffers: buffers.into(),
+            pool,
         })
     }
 
-    /// Bytes of all buffers.
-    pub(super) fn bytes(&self) -> u64 {
-        self.buffers.bytes() + self.in_tiles.size()
+    /// All buffers.
+    pub(super) fn held(&self) -> impl Iterator<Item = &wgpu::Buffer> {
+        let named = self.buffers.iter().map(|(_, buffer)| buffer);
+        named.chain([&self.in_tiles])
     }
 
     /// What the kernels found out of the lists, which hold so many entries. A kernel of a user's may

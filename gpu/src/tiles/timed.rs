@@ -1,16 +1,16 @@
 //! A band drawn over and over, each part timed.
 
-use triptych_spec::abuffer::Lists;
 use triptych_spec::tiles::ROWS;
 
 use super::attempt::BINNED_MAX;
+use super::pool::Pool;
 use super::room::Room;
-use super::{Options, Region, attempt, nodes};
+use super::{Options, Region, attempt};
 use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::Rasterizer;
-use crate::timer::Timer;
+use crate::timer::Queries;
 
 /// What is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,29 +29,30 @@ pub enum Span {
     Local(u32),
 }
 
-/// A whole target that is set up.
-pub struct Timed<'r, 'g> {
-    room: Room<'r, 'g>,
+/// A band that is set up.
+pub(super) struct Timed<'r, 'g> {
+    pub(super) room: Room<'r, 'g>,
     spans: Vec<(Span, Vec<Ready>)>,
     /// Triangles in bins.
-    pub binned: u32,
+    pub(super) binned: u32,
     /// Fragments in lists.
-    pub fragments: u32,
+    pub(super) fragments: u32,
     /// Tiles that [`Self::local`] left to lists; lists that [`Self::linked`] has to sort.
-    pub left: u32,
+    pub(super) left: u32,
 }
 
 impl<'r, 'g> Timed<'r, 'g> {
-    /// Sets up a target, and pictures of these numbers of layers.
+    /// Sets up a band, and pictures of these numbers of layers.
     ///
     /// # Errors
     /// Limits by name, WGSL errors, and whatever the device reports.
-    pub fn new(
+    pub(super) fn new(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
+        at: (Band, Pool),
     ) -> Result<Self, GpuError> {
-        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        let (mut timed, drawn) = Self::bins(rasterizer, options, at)?;
         timed.lists(drawn, layers)?;
         Ok(timed)
     }
@@ -60,12 +61,13 @@ impl<'r, 'g> Timed<'r, 'g> {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn local(
+    pub(super) fn local(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
+        at: (Band, Pool),
     ) -> Result<Self, GpuError> {
-        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        let (mut timed, drawn) = Self::bins(rasterizer, options, at)?;
         timed.room.with_digests()?;
         let mut locals = Vec::new();
         for n in layers {
@@ -94,28 +96,24 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(timed)
     }
 
-    /// The same with linked lists, in regions that hold just what is drawn. `inspect` says how long the
-    /// longest list is, or `None` if lists must not be followed; then there is nothing to time.
+    /// The same with linked lists, in regions that hold just what is drawn.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn linked(
+    pub(super) fn linked(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
         layers: &[u32],
-        inspect: impl Fn(&Lists) -> Option<u32>,
-    ) -> Result<Option<Self>, GpuError> {
-        let (mut timed, drawn) = Self::bins(rasterizer, options)?;
+        at: (Band, Pool),
+    ) -> Result<Self, GpuError> {
+        let (mut timed, drawn) = Self::bins(rasterizer, options, at)?;
         let room = &mut timed.room;
         let (regions, passes) = room.link_exactly(drawn)?;
-        // Whoever links them again links the same fragments, in the same regions.
-        let built = nodes::lists(room, Band::whole(rasterizer.size), &regions)?;
-        let Some(longest) = inspect(&built) else {
-            return Ok(None);
-        };
-        timed.fragments = built.attempts;
+        timed.fragments = regions.iter().map(|r| r.attempts).sum();
         timed.spans.push((Span::Fill, passes));
         timed.left = regions.iter().map(Region::unordered).sum();
+        // A list is no longer than its region.
+        let longest = regions.iter().map(|r| r.attempts).max().unwrap_or(0);
         if timed.left > 0 {
             timed
                 .spans
@@ -126,15 +124,16 @@ impl<'r, 'g> Timed<'r, 'g> {
                 .spans
                 .push((Span::Shade(*n), room.blend_linked(longest, *n)?));
         }
-        Ok(Some(timed))
+        Ok(timed)
     }
 
-    /// A target with triangles in bins; the longest bin, and how many of it a dispatch draws.
+    /// A band with triangles in bins; the longest bin, and how many of it a dispatch draws.
     fn bins(
         rasterizer: &'r Rasterizer<'g>,
         options: &Options<'_>,
+        at: (Band, Pool),
     ) -> Result<(Self, (u32, u32)), GpuError> {
-        let mut room = attempt::room(rasterizer, options, Band::whole(rasterizer.size))?;
+        let mut room = attempt::room_in(rasterizer, options, at)?;
         let (bins, _) = attempt::count_bins(&room)?;
         let binned = bins.last().copied().unwrap_or(0);
         if binned > BINNED_MAX {
@@ -169,10 +168,12 @@ impl<'r, 'g> Timed<'r, 'g> {
         let place = room.place_lists(drawn)?;
         attempt::submit(room, &place)?;
         let fragments = gpu.word(room.buffers.get("counter"), 0)?;
-        let entries = || gpu.storage("entries of lists", 8 * u64::from(fragments));
-        room.buffers.set("listed", entries()?);
+        let bytes = 8 * u64::from(fragments);
+        let listed = room.pool.storage(gpu, "entries of lists", bytes)?;
+        room.buffers.set("listed", listed);
         if room.longest(fragments)?.length > ROWS {
-            room.buffers.set("merged", entries()?);
+            let merged = room.pool.storage(gpu, "entries that are merged", bytes)?;
+            room.buffers.set("merged", merged);
         }
         let fill = room.drawn("jagged_fill", fragments, drawn)?;
         attempt::submit(room, &fill)?;
@@ -189,13 +190,8 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(())
     }
 
-    /// Bytes of all buffers, but for the triangles.
-    pub fn bytes(&self) -> u64 {
-        self.room.bytes()
-    }
-
     /// The parts, in the order in which they run.
-    pub fn spans(&self) -> impl Iterator<Item = Span> {
+    pub(super) fn spans(&self) -> impl Iterator<Item = Span> {
         self.spans.iter().map(|(span, _)| *span)
     }
 
@@ -203,7 +199,10 @@ impl<'r, 'g> Timed<'r, 'g> {
     ///
     /// # Errors
     /// Whatever the device reports.
-    pub fn pictures(&self, mut show: impl FnMut(u32, Vec<[f32; 3]>)) -> Result<(), GpuError> {
+    pub(super) fn pictures(
+        &self,
+        mut show: impl FnMut(u32, Vec<[f32; 3]>),
+    ) -> Result<(), GpuError> {
         for (span, passes) in &self.spans {
             attempt::submit(&self.room, passes)?;
             match span {
@@ -217,19 +216,18 @@ impl<'r, 'g> Timed<'r, 'g> {
         Ok(())
     }
 
-    /// Runs every part once, and gives the seconds of each.
-    ///
-    /// # Errors
-    /// Whatever the device reports.
-    pub fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError> {
-        let count = u32::try_from(self.spans.len()).expect("a few");
-        let gpu = self.room.rasterizer.gpu;
-        timer.time(gpu, 0..count, |span, encoder, queries| {
-            let passes = &self.spans[span as usize].1;
-            for (at, pass) in passes.iter().enumerate() {
-                let writes = queries.and_then(|q| q.writes(span, at, passes.len()));
-                pass.record(encoder, writes);
-            }
-        })
+    /// Records a part, which has this number among a timer's.
+    pub(super) fn record(
+        &self,
+        part: usize,
+        number: u32,
+        encoder: &mut wgpu::CommandEncoder,
+        queries: Option<&Queries>,
+    ) {
+        let passes = &self.spans[part].1;
+        for (at, pass) in passes.iter().enumerate() {
+            let writes = queries.and_then(|q| q.writes(number, at, passes.len()));
+            pass.record(encoder, writes);
+        }
     }
 }

@@ -25,16 +25,16 @@
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
 //! triangles is far from this bound on purpose. The spec is held to the same bytes.
 
+mod counted;
+mod layouts;
+
 use super::Method;
 use triptych_gpu::abuffer::Part;
-use triptych_gpu::raster::SATURATED;
-use triptych_spec::abuffer::{NOTHING, Opaque, opaque, visible};
+use triptych_spec::abuffer::NOTHING;
 use triptych_spec::raster;
-use triptych_spec::scene::Scene;
-use triptych_spec::vertex::Primitives;
 
-use crate::plan::Plan;
-use crate::replay::spec::{SpecRun, faces};
+use crate::replay::spec::SpecRun;
+pub use counted::Counted;
 
 /// What the formulas are made of, on one sub-pixel grid.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -99,63 +99,6 @@ impl Counts {
         }
     }
 
-    /// Of a scene with any number of fragments, which are counted and not kept; and how many the
-    /// lists of each row of pixels have.
-    ///
-    /// # Errors
-    /// One line for more fragments in lists than a word counts.
-    pub fn counted(
-        scene: &Scene,
-        primitives: &Primitives,
-        plan: &Plan,
-    ) -> Result<(Self, Vec<u32>), String> {
-        let faces = faces(scene, primitives);
-        let surfaces = match plan.opaque {
-            true => opaque(scene, primitives),
-            false => Opaque::nothing(primitives),
-        };
-        let pixels = primitives.size.pixels();
-        let mut lists = vec![0_u32; pixels];
-        let (mut considered, mut opaque_fragments) = (0, 0);
-        raster::cover(primitives, |f| {
-            if faces[f.prim as usize][3] >= 1.0 {
-                opaque_fragments += 1;
-                return;
-            }
-            considered += 1;
-            let kept = !plan.depth_test || visible(primitives, &surfaces, &f) != 0;
-            lists[f.pixel as usize] += u32::from(kept);
-        });
-        let fragments: u64 = lists.iter().map(|list| u64::from(*list)).sum();
-        if fragments >= u64::from(SATURATED) {
-            return Err(format!(
-                "{fragments} fragments in lists, more than the {} that are counted",
-                SATURATED - 1
-            ));
-        }
-        let mut lengths = Vec::new();
-        for list in &lists {
-            let length = *list as usize;
-            if lengths.len() <= length {
-                lengths.resize(length + 1, 0);
-            }
-            lengths[length] += 1;
-        }
-        let rows = lists.chunks(primitives.size.width as usize);
-        let opaque_triangles = faces.iter().filter(|face| face[3] >= 1.0).count() as u64;
-        let counts = Self {
-            pixels: pixels as u64,
-            fragments,
-            considered,
-            opaque_fragments,
-            opaque_pixels: surfaces.prim.iter().filter(|p| **p != NOTHING).count() as u64,
-            transparent: faces.len() as u64 - opaque_triangles,
-            opaque: opaque_triangles,
-            lengths,
-        };
-        Ok((counts, rows.map(|row| row.iter().sum()).collect()))
-    }
-
     /// Fragments of the longest list.
     pub fn longest(&self) -> u32 {
         u32::try_from(self.lengths.len().saturating_sub(1)).unwrap_or(u32::MAX)
@@ -175,16 +118,20 @@ impl Counts {
             .sum()
     }
 
+    /// Nodes that are relinked, `M`.
+    fn merged(&self) -> u64 {
+        self.sum(|length| length * u64::from(length.max(1).next_power_of_two().ilog2()))
+    }
+
     /// What a part must do.
     pub fn work(&self, part: Part) -> Work {
         let p = self.pixels;
-        let merged = |length: u64| length * u64::from(length.max(1).next_power_of_two().ilog2());
         let bytes = match part {
             Part::Clear => 12 * p,
             Part::Opaque => 88 * self.opaque + 12 * self.opaque_fragments + 8 * self.opaque_pixels,
             Part::Build => 60 * self.transparent + 4 * self.considered + 40 * self.fragments,
             Part::Nearest(n) => 28 * p + 16 * self.fragments + 16 * self.shown(n),
-            Part::Sort => 104 * p + 20 * self.sum(merged),
+            Part::Sort => 104 * p + 20 * self.merged(),
             Part::NearestSorted(n) => 28 * p + 32 * self.shown(n),
             Part::Resolve => 140 * p + 32 * self.fragments,
         };
@@ -235,32 +182,11 @@ impl Counts {
 #[cfg(test)]
 mod tests {
     use triptych_gpu::abuffer;
-    use triptych_spec::vertex::primitives;
 
     use super::*;
-    use crate::corpus;
-    use crate::scene::load;
-
-    /// What is counted by itself is what lists have.
-    #[test]
-    fn fragments_are_counted_as_they_are_stored() {
-        for name in ["mixed", "msaa-mixed", "quads"] {
-            let file = corpus::root().join("abuffer").join(name).join("scene.toml");
-            let loaded = load(&file).unwrap_or_else(|e| panic!("{e}"));
-            let (scene, plan) = (&loaded.scene, Plan::new(&loaded.scene, true));
-            let prims = primitives(scene, 8);
-            let (counts, rows) = Counts::counted(scene, &prims, &plan).unwrap();
-            let run = SpecRun::new(scene, prims, &plan).unwrap();
-            assert_eq!(counts, Counts::of(&run), "{name}");
-            let width = scene.size.width as usize;
-            let ends = run.sorted.offsets.iter().step_by(width);
-            let must: Vec<u32> = ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect();
-            assert_eq!(rows, must, "{name}");
-        }
-    }
 
     /// Two empty pixels, one list of one, and two of five.
-    fn counts() -> Counts {
+    pub(super) fn counts() -> Counts {
         Counts {
             pixels: 5,
             fragments: 11,

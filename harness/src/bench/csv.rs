@@ -1,12 +1,16 @@
 //! Rows as comma-separated values, one line each, in a fixed order of columns.
 
+use super::rows::{BLENDS, ORDERS};
 use super::{Bench, Row, Spread};
 use crate::text::quoted;
 
 /// The columns. Times are in milliseconds, rates per second, memory in bytes, PSNR in
 /// decibels or `exact`; `ratio` is over the same leg's time of all layers by sorting; `time` is from
 /// snapped triangles on, `frame` from vertices on, both to the picture; what was not measured is empty.
-pub const COLUMNS: [&str; 34] = [
+///
+/// `before_ms` is all that comes before lists, or layers, are put in order: surfaces and `build_ms`, which
+/// is what makes lists, or bins; `resolve_ms` is `order_ms` and `blend_ms`.
+pub const COLUMNS: [&str; 36] = [
     "scene",
     "width",
     "height",
@@ -41,6 +45,8 @@ pub const COLUMNS: [&str; 34] = [
     "bytes_per_fragment",
     "bands",
     "vertices_ms",
+    "build_ms",
+    "resolve_ms",
 ];
 
 /// The whole file, with a header.
@@ -55,13 +61,7 @@ pub fn csv(bench: &Bench) -> String {
 }
 
 fn values(row: &Row) -> [String; COLUMNS.len()] {
-    let of = |names: &[&str]| {
-        let parts = row
-            .parts
-            .iter()
-            .filter(|(n, _)| names.contains(&n.as_str()));
-        number(parts.fold(0.0, |sum, (_, ms)| sum + ms))
-    };
+    let before = row.of_parts(&["opaque"]) + row.build();
     let frame = |value: fn(Spread) -> f64| row.frame.map_or_else(String::new, |f| number(value(f)));
     let vertices = row.frame.map(|frame| frame.median - row.time.median);
     let vertices = vertices.map_or_else(String::new, number);
@@ -91,9 +91,9 @@ fn values(row: &Row) -> [String; COLUMNS.len()] {
         row.bound.clone(),
         number(row.bound_ms),
         number(row.fraction),
-        of(&["clear", "opaque", "build"]),
-        of(&["nearest", "sort"]),
-        of(&["blend"]),
+        number(before),
+        number(row.of_parts(&ORDERS)),
+        number(row.of_parts(&BLENDS)),
         row.samples.to_string(),
         frame(|of| of.median),
         frame(|of| of.min),
@@ -102,6 +102,8 @@ fn values(row: &Row) -> [String; COLUMNS.len()] {
             .map_or_else(String::new, |bytes| bytes.to_string()),
         row.bands.to_string(),
         vertices,
+        number(row.build()),
+        number(row.resolve()),
     ]
 }
 

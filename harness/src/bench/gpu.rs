@@ -174,7 +174,7 @@ impl<'r> Leg<'r> {
             seconds += tiles.time()?.iter().sum::<f64>();
         }
         for beside in &self.beside {
-            seconds += beside.time()?;
+            seconds += beside.time()?.iter().sum::<f64>();
         }
         Ok(seconds)
     }

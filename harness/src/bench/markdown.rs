@@ -26,8 +26,9 @@ pub fn page(bench: &Bench) -> String {
             .map(|c| format!("- ceiling of {}", text(&ceiling(c)))),
     );
     lines.extend(bench.remarks.iter().map(|r| format!("- {}", text(r))));
-    lines.push(String::new());
-    lines.extend(how(bench).lines().map(str::to_owned));
+    for paragraph in how(bench) {
+        lines.extend([String::new(), paragraph]);
+    }
     lines.push(String::new());
     lines.push(format!(
         "![Front of time against error]({}.svg)",
@@ -46,10 +47,12 @@ pub fn page(bench: &Bench) -> String {
         lines.push(String::new());
         lines.push(format!("## {}", text(&section.heading)));
         lines.push(String::new());
+        lines.extend([section.note.to_owned(), String::new()]);
         lines.push(format!("| {} |", section.columns.join(" | ")));
         lines.push(format!(
-            "|---|---|{}",
-            "---:|".repeat(section.columns.len() - 2)
+            "|{}{}",
+            "---|".repeat(section.names),
+            "---:|".repeat(section.columns.len() - section.names)
         ));
         let cells = |row: &Vec<String>| row.iter().map(|c| text(c)).collect::<Vec<_>>().join(" | ");
         lines.extend(section.rows.iter().map(|row| format!("| {} |", cells(row))));
@@ -70,23 +73,34 @@ pub(super) fn machine(machine: &Machine) -> Vec<String> {
     lines
 }
 
-fn how(bench: &Bench) -> String {
-    format!(
-        "Medians of {} rounds, fewer of software drivers unless asked for, as the CSV says, and one of the \
-         spec, with minimum and maximum; every round runs every leg and variant \
-         once. Before\nthem come at least {WARM_UP} rounds to warm up, and as many as keep each \
-         adapter at work for {} s on each scene, by its own clock; before each of its rounds a board is at work for {} ms.\nTimed is all from snapped triangles to the \
-         picture, coverage included: empty\nthe lists, opaque surfaces, build, order, blend; no \
-         transfers, no compilation. GPU times are timestamps\nof the device. *From vertices* is the median of the same with transform, clip and snap before it, on the device. Of each leg and number of \
-         layers the faster method is shown, the CSV has both:\n*insertion* keeps the n nearest in \
-         one walk over the unsorted list, *sort* sorts and stops after n.\n*Of all* is the time \
-         over the same leg's with all layers by sorting, round by round. PSNR is of linear\n\
-         colours with peak 1 against the spec with all layers; *exact* means no difference at \
-         all, and above\n100 dB there is only rounding. *Of bound* is the least time for the \
-         bytes or atomics that the technique\nmust move, at the ceilings above, over the median.\nThe ceiling of copies is that of memory: \
-         where all data fit in a cache, as on tiny scenes, it can\nexceed 100 %.",
+/// How to read a page, a paragraph each.
+fn how(bench: &Bench) -> [String; 4] {
+    let rounds = format!(
+        "Medians of {} rounds, fewer of software drivers unless asked for, as the CSV says, and one of the spec, with \
+         minimum and maximum; every round runs every leg and variant once. Before them come at least {WARM_UP} rounds to \
+         warm up, and as many as keep each adapter at work for {} s on each scene, by its own clock; before each of its \
+         rounds a board is at work for {} ms. No picture is timed that was not compared with the spec's, before and after.",
         bench.runs,
         WARM_UP_WORK.as_secs(),
         AWAKE.as_millis(),
-    )
+    );
+    let parts = "Timed is all from snapped triangles to the picture, coverage included: empty the lists, opaque surfaces, \
+                 build, order, blend; no transfers, no compilation. GPU times are timestamps of the device. *From vertices* \
+                 is the median of the same with transform, clip and snap before it, on the device. *Of all* is the time \
+                 over the same leg's with all layers by sorting, round by round. *Memory*: all buffers of a frame at once; \
+                 *bands* of rows are made one after another in the same buffers. *B/fragment*: bytes of a stored fragment.";
+    let methods = "Of each leg and number of layers the fastest method is shown, the CSV has all: *insertion* keeps the n \
+                   nearest in one walk over the unsorted list, *sort* sorts and stops after n; *tiles*, *linked* and *local* \
+                   draw tile by tile, with runs, linked lists, or nothing in memory. Below them, where they were measured, \
+                   are depth peeling (*peel*), dual depth peeling (*dual*), the triangles blended as they come (*alpha*), \
+                   weighted blended transparency (*weighted*), and the same lists in other layouts, which the last tables \
+                   explain. A leg is an adapter and a path: *fragment* has the hardware's rasteriser, *compute* and *native* \
+                   ours, with 64-bit integers made of words or the adapter's own; *spec* is one core.";
+    let errors = "PSNR is of linear colours with peak 1 against the spec with all layers; *largest* is the largest difference \
+                  of a channel; *exact* means no difference at all, and above 100 dB there is only rounding. *Of bound* is \
+                  the least time for the bytes or atomics that the technique must move, at the ceilings above, over the \
+                  median. The ceiling of copies is that of memory: where all data fit in a cache, as on tiny scenes, it can \
+                  exceed 100 %.";
+    let [parts, methods, errors] = [parts, methods, errors].map(str::to_owned);
+    [rounds, parts, methods, errors]
 }

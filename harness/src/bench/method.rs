@@ -1,6 +1,7 @@
 //! Techniques, and what tells them apart.
 
 use serde::{Deserialize, Serialize};
+use triptych_gpu::layouts::Layout;
 
 /// How transparent surfaces are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -16,6 +17,16 @@ pub enum Method {
     Linked,
     /// By tiles, without lists in memory.
     Local,
+    /// Linked nodes of 16 bytes.
+    Packed,
+    /// Linked nodes from several counters.
+    Regions,
+    /// Linked nodes that are in order while they are built.
+    Ordered,
+    /// Runs of one array, counted first.
+    Precalc,
+    /// An array and a counter for each pixel.
+    Bucket,
     /// Depth peeling: the nearest layer behind the last, again and again.
     Peel,
     /// Dual depth peeling: the nearest and the farthest.
@@ -38,6 +49,11 @@ impl Method {
             Self::Tiles => "tiles",
             Self::Linked => "linked",
             Self::Local => "local",
+            Self::Packed => "packed",
+            Self::Regions => "regions",
+            Self::Ordered => "ordered",
+            Self::Precalc => "precalc",
+            Self::Bucket => "bucket",
             Self::Peel => "peel",
             Self::Dual => "dual",
             Self::Alpha => "alpha",
@@ -66,6 +82,40 @@ impl Method {
 
     /// Whether its picture is another than that of the layers in order.
     pub fn approximates(self) -> bool {
-        matches!(self, Self::Alpha | Self::Weighted)
+        matches!(self, Self::Alpha | Self::Weighted | Self::Packed)
+    }
+
+    /// How it lays the same lists out, if that is all that tells it from others.
+    pub fn layout(self) -> Option<Layout> {
+        Some(match self {
+            Self::Packed => Layout::Packed,
+            Self::Regions => Layout::Regions,
+            Self::Ordered => Layout::Ordered,
+            Self::Precalc => Layout::Precalc,
+            Self::Bucket => Layout::Bucket,
+            _ => return None,
+        })
+    }
+
+    /// What holds a fragment of a list, if anything does.
+    pub fn node(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Insertion | Self::Sort | Self::Regions => "key, link, triangle, mask; 4 floats",
+            Self::Packed => "4 bytes of colour, key, triangle and mask, link",
+            Self::Linked => "key, link, triangle, mask",
+            Self::Ordered => "key, triangle and mask; link",
+            Self::Tiles => "key, triangle",
+            Self::Precalc | Self::Bucket => "key, triangle and mask",
+            Self::Local | Self::Peel | Self::Dual | Self::Alpha | Self::Weighted => return None,
+        })
+    }
+
+    /// Bytes of a stored fragment that were demanded: of linked nodes, and of arrays.
+    pub fn most_of_fragment(self) -> Option<u64> {
+        match self {
+            Self::Tiles | Self::Precalc | Self::Bucket => Some(8),
+            _ if self.node().is_some() => Some(16),
+            _ => None,
+        }
     }
 }

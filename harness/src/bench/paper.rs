@@ -15,6 +15,7 @@ use crate::corpus::Entry;
 use crate::mesh::Intake;
 use crate::scene::{LoadError, Loaded, load_text};
 
+pub(super) use tables::{LaidOut, laid_out};
 pub use tables::{Section, sections};
 
 /// A scene of the paper, or another of our own.
@@ -85,12 +86,12 @@ pub(super) const TABLE: &[Technique] = &[
     // Count, sums, and a second pass over the triangles; an array of a fixed size for each pixel.
     Technique {
         name: "precalc",
-        methods: &[],
+        methods: &[Method::Precalc],
         fps: [Some(285.0), Some(143.0)],
     },
     Technique {
         name: "bucket depth peeling",
-        methods: &[],
+        methods: &[Method::Bucket],
         fps: [None, Some(256.0)],
     },
     Technique {

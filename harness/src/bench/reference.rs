@@ -7,7 +7,7 @@ use triptych_spec::raster::{self, Samples};
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::{Primitives, primitives};
 
-use super::counts::Counts;
+use super::counts::{Counted, Counts};
 use super::error::{Error, psnr};
 use super::gpu::Refusal;
 use super::pieces::{common, from_row, lists_of_rows, looked_at, of_rows, sorted_rows, within};
@@ -32,6 +32,8 @@ pub(super) struct Grid {
     pub(super) layers: Vec<u32>,
     /// What is compared: the whole target, or, of more fragments than a replay holds, some rows.
     pieces: Vec<Piece>,
+    /// Where these are some rows, the surfaces of the whole target.
+    surfaces: Option<Opaque>,
 }
 
 /// Some rows of a target.
@@ -74,7 +76,7 @@ impl Grid {
     }
 
     /// The same where so many fragments are the most that are held.
-    fn holding(
+    pub(super) fn holding(
         most: u64,
         scene: &Scene,
         plan: &Plan,
@@ -87,21 +89,26 @@ impl Grid {
         let faces = faces(scene, &primitives);
         let size = primitives.size;
         let few = raster::count(&primitives) <= most;
-        let (counts, rows, bands) = if few {
-            (Counts::default(), Vec::new(), vec![Band::whole(size)])
-        } else {
-            let (counts, rows) = Counts::counted(scene, &primitives, plan)?;
-            let bands = looked_at(&rows);
-            (counts, rows, bands)
-        };
         let mut grid = Self {
             faces,
-            counts,
-            rows,
+            counts: Counts::default(),
+            rows: Vec::new(),
             layers: Vec::new(),
             pieces: Vec::new(),
+            surfaces: None,
             primitives,
         };
+        let mut bands = vec![Band::whole(size)];
+        if !few {
+            let counted = Counts::counted(scene, &grid.primitives, plan)?;
+            bands = looked_at(&counted.rows);
+            let Counted {
+                counts,
+                rows,
+                opaque,
+            } = counted;
+            (grid.counts, grid.rows, grid.surfaces) = (counts, rows, Some(opaque));
+        }
         for band in bands {
             let run = SpecRun::new(scene, of_rows(&grid.primitives, band), plan)?;
             if few {
@@ -154,9 +161,16 @@ impl Grid {
         whole.then_some(&piece.run)
     }
 
-    /// Its surfaces.
-    pub(super) fn opaque(&self) -> Option<&Opaque> {
-        self.whole().map(|run| &run.opaque)
+    /// The surfaces of the whole target.
+    pub(super) fn opaque(&self) -> &Opaque {
+        let piece = || &self.pieces[0].run.opaque;
+        self.surfaces.as_ref().unwrap_or_else(piece)
+    }
+
+    /// What is compared, each by itself: its rows, and what the spec makes of them as a target of
+    /// their own.
+    pub(super) fn alone(&self) -> impl Iterator<Item = (Band, &SpecRun)> {
+        self.pieces.iter().map(|piece| (piece.band, &piece.run))
     }
 
     /// Fragments in all lists.

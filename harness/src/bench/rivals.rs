@@ -2,9 +2,12 @@
 //!
 //! Another one is a line of [`ALL`], and a function that sets it up.
 
+mod layouts;
+
 use triptych_gpu::abuffer::rivals::{Once, Peeling, Single, Surfaces, Technique};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::frame::Band;
+use triptych_gpu::layouts::Layout;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::abuffer::{LAYERS_MAX, Target, halves, resolve};
@@ -30,6 +33,11 @@ pub(super) const ALL: &[Kind] = &[
     kind(Method::Dual, dual),
     kind(Method::Alpha, alpha),
     kind(Method::Weighted, weighted),
+    kind(Method::Packed, |given| given.laid_out(Layout::Packed)),
+    kind(Method::Regions, |given| given.laid_out(Layout::Regions)),
+    kind(Method::Ordered, |given| given.laid_out(Layout::Ordered)),
+    kind(Method::Precalc, |given| given.laid_out(Layout::Precalc)),
+    kind(Method::Bucket, |given| given.laid_out(Layout::Bucket)),
 ];
 
 const fn kind(method: Method, new: for<'r> fn(&Given<'r>) -> Result<Made<'r>, Refusal>) -> Kind {
@@ -38,11 +46,15 @@ const fn kind(method: Method, new: for<'r> fn(&Given<'r>) -> Result<Made<'r>, Re
 
 /// What a technique is set up from.
 pub(super) struct Given<'r> {
+    /// The leg's name.
+    pub(super) label: &'r str,
     pub(super) rasterizer: &'r Rasterizer<'r>,
     pub(super) grid: &'r Grid,
     pub(super) scene: &'r Scene,
     /// The spec of the whole target.
     pub(super) run: &'r SpecRun,
+    /// Whether fragments behind opaque surfaces are left out of lists.
+    pub(super) depth_test: bool,
     /// Whatever it takes.
     pub(super) all: bool,
 }
@@ -63,8 +75,12 @@ struct Made<'r> {
 trait Runs {
     /// Runs it once, and gives the picture.
     fn picture(&self) -> Result<Vec<[f32; 3]>, GpuError>;
-    /// Seconds of a run, of the only span of a timer.
-    fn time(&self, timer: &Timer) -> Result<f64, GpuError>;
+    /// What its parts are called, each a span of a timer.
+    fn parts(&self) -> Vec<&'static str> {
+        vec!["blend"]
+    }
+    /// Seconds of each part of a run.
+    fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError>;
     /// Bytes of its own buffers.
     fn bytes(&self) -> u64;
     /// Bytes of a stored fragment, if it stores any.
@@ -80,8 +96,8 @@ impl Runs for Peeled<'_> {
         self.0.run(self.1)
     }
 
-    fn time(&self, timer: &Timer) -> Result<f64, GpuError> {
-        self.0.time(timer, self.1)
+    fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError> {
+        Ok(vec![self.0.time(timer, self.1)?])
     }
 
     fn bytes(&self) -> u64 {
@@ -94,8 +110,8 @@ impl Runs for Once<'_, '_> {
         self.run()
     }
 
-    fn time(&self, timer: &Timer) -> Result<f64, GpuError> {
-        self.time(timer)
+    fn time(&self, timer: &Timer) -> Result<Vec<f64>, GpuError> {
+        Ok(vec![self.time(timer)?])
     }
 
     fn bytes(&self) -> u64 {
@@ -109,21 +125,27 @@ impl<'r> Given<'r> {
         Surfaces::upload(self.rasterizer, &self.run.opaque, band)
     }
 
+    /// Refuses what takes a software driver too long, and was not asked for.
+    fn has_time(&self, work: u64, what: impl Fn() -> String) -> Result<(), Refusal> {
+        let software = self.rasterizer.gpu.info.device_type == wgpu::DeviceType::Cpu;
+        if !software || self.all || work <= SOFTWARE {
+            return Ok(());
+        }
+        let what = what();
+        let words = format!("{what}: on a software driver only if asked for, by --rivals");
+        Err(Refusal::Skipped(words))
+    }
+
     /// Peels so many times, for a picture that must be this one.
     fn peels(&self, technique: Technique, times: u32, must: Picture) -> Result<Made<'r>, Refusal> {
         let each = (self.grid.faces.len() as u64) + self.grid.fragments();
-        let software = self.rasterizer.gpu.info.device_type == wgpu::DeviceType::Cpu;
         if times > LAYERS_MAX {
             let words = format!("{times} layers, more than {LAYERS_MAX}");
             return Err(Refusal::Skipped(words));
         }
-        if software && !self.all && u64::from(times) * each > SOFTWARE {
-            let words = format!(
-                "goes through {each} triangles and fragments {times} times: on a software driver \
-                 only if asked for, by --rivals"
-            );
-            return Err(Refusal::Skipped(words));
-        }
+        self.has_time(u64::from(times) * each, || {
+            format!("goes through {each} triangles and fragments {times} times")
+        })?;
         let surfaces = self.surfaces()?;
         let at = (Band::whole(self.rasterizer.size), self.scene.background);
         let grid = self.grid;
@@ -197,27 +219,24 @@ pub(super) struct Beside<'r> {
     grid: &'r Grid,
     timer: Timer,
     error: Error,
-    seconds: Vec<f64>,
+    /// Seconds of each part, round by round.
+    rounds: Vec<Vec<f64>>,
 }
 
 impl<'r> Beside<'r> {
     /// Sets one up, and compares its picture.
-    pub(super) fn new(
-        kind: &Kind,
-        label: &str,
-        given: &Given<'r>,
-        clock: &Clock,
-    ) -> Result<Self, Refusal> {
+    pub(super) fn new(kind: &Kind, given: &Given<'r>, clock: &Clock) -> Result<Self, Refusal> {
         let made = (kind.new)(given)?;
+        let parts = u32::try_from(made.run.parts().len()).expect("a few parts");
         let mut beside = Self {
             method: kind.method,
             made,
             grid: given.grid,
-            timer: Timer::new(given.rasterizer.gpu, clock, 1)?,
+            timer: Timer::new(given.rasterizer.gpu, clock, parts)?,
             error: given.grid.error_of_spec(0),
-            seconds: Vec::new(),
+            rounds: Vec::new(),
         };
-        beside.error = beside.compare(label)?;
+        beside.error = beside.compare(given.label)?;
         Ok(beside)
     }
 
@@ -234,21 +253,23 @@ impl<'r> Beside<'r> {
     }
 
     /// Runs it once.
-    pub(super) fn time(&self) -> Result<f64, Refusal> {
+    pub(super) fn time(&self) -> Result<Vec<f64>, Refusal> {
         Ok(self.made.run.time(&self.timer)?)
     }
 
     /// Runs it once, and keeps the time.
     pub(super) fn round(&mut self) -> Result<(), Refusal> {
         let seconds = self.time()?;
-        self.seconds.push(seconds);
+        self.rounds.push(seconds);
         Ok(())
     }
 
     /// The frame that was measured; `before` is what comes before it.
     pub(super) fn measured(&self, before: &Measured) -> Measured {
         let mut parts = before.parts.clone();
-        parts.push(("blend", self.seconds.clone()));
+        let own = self.made.run.parts().into_iter().enumerate();
+        let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
+        parts.extend(own.map(|(at, name)| (name, seconds(at))));
         Measured {
             method: self.method,
             layers: self.made.layers,
@@ -256,6 +277,7 @@ impl<'r> Beside<'r> {
             error: self.error,
             memory: self.grid.counts.triangles() + self.made.run.bytes() + before.memory,
             of_fragment: self.made.run.of_fragment(),
+            bands: 1,
             work: self.made.work.and(before.work),
         }
     }

@@ -6,11 +6,37 @@ use super::scene::Measured;
 use super::{Method, Row, Spread};
 use crate::scene::Loaded;
 
+/// Parts of a frame that make lists, or bins of triangles.
+pub(super) const BUILDS: [&str; 5] = ["clear", "bin", "place", "fill", "build"];
+
+/// Parts that put layers in order.
+pub(super) const ORDERS: [&str; 2] = ["nearest", "sort"];
+
+/// Parts that make the picture.
+pub(super) const BLENDS: [&str; 2] = ["blend", "local"];
+
+impl Row {
+    /// Median milliseconds of some parts together.
+    pub(super) fn of_parts(&self, names: &[&str]) -> f64 {
+        let own = self.parts.iter();
+        let own = own.filter(|(name, _)| names.contains(&name.as_str()));
+        own.fold(0.0, |sum, (_, ms)| sum + ms)
+    }
+
+    /// Median milliseconds of what makes lists, beside opaque surfaces.
+    pub(super) fn build(&self) -> f64 {
+        self.of_parts(&BUILDS)
+    }
+
+    /// Median milliseconds from lists to the picture.
+    pub(super) fn resolve(&self) -> f64 {
+        self.of_parts(&ORDERS) + self.of_parts(&BLENDS)
+    }
+}
+
 /// What the rows of a leg have in common.
 pub(super) struct Timing<'t> {
     pub(super) leg: &'t str,
-    /// Bands that the lists are made in.
-    pub(super) bands: u32,
     /// Seconds of the vertex stages, round by round.
     pub(super) vertices: Option<Vec<f64>>,
 }
@@ -57,11 +83,7 @@ pub(super) fn rows(
             largest: m.error.largest,
             memory: m.memory,
             of_fragment: m.of_fragment,
-            bands: if m.method.has_lists() {
-                timing.bands
-            } else {
-                1
-            },
+            bands: m.bands,
             fragments_per_second: 1000.0 * fragments as f64 / time.median,
             bound: what.to_owned(),
             bound_ms: 1000.0 * seconds,

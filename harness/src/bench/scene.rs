@@ -32,6 +32,8 @@ pub(super) struct Measured {
     pub(super) memory: u64,
     /// Bytes of a stored fragment.
     pub(super) of_fragment: Option<u64>,
+    /// Bands of rows that it is made in.
+    pub(super) bands: u32,
     pub(super) work: Work,
 }
 
@@ -55,9 +57,7 @@ impl Done {
     fn keep<T>(&mut self, what: &str, result: Result<T, Refusal>) -> Option<T> {
         result.map_err(|refusal| self.refused(what, refusal)).ok()
     }
-}
 
-impl Done {
     /// The spec's rows, unless it does not hold the scene.
     fn of_core(&mut self, loaded: &Loaded, plan: &Plan, spec: &Grid, bound: &Bound<'_>) {
         let Some(run) = spec.whole() else {
@@ -73,7 +73,6 @@ impl Done {
         let core = Core::new(&loaded.scene, plan, spec, run);
         let timing = Timing {
             leg: "spec",
-            bands: 1,
             vertices: Some(vec![core.vertices]),
         };
         let own = rows(loaded, spec, &timing, &core.measured(), bound);
@@ -90,7 +89,6 @@ impl Done {
         }
         let timing = Timing {
             leg: &leg.label,
-            bands: leg.bands(),
             vertices: leg.vertices.as_ref().map(|v| v.seconds.clone()),
         };
         let own = rows(loaded, leg.grid, &timing, &measured, bound);
@@ -275,14 +273,16 @@ fn leg<'r>(
     }
     if let Some(run) = grid.whole().filter(|_| one && asked.rivals) {
         let given = rivals::Given {
+            label,
             rasterizer,
             grid,
             scene,
             run,
+            depth_test: plan.depth_test,
             all: options.rivals,
         };
         for kind in rivals::ALL {
-            let beside = Beside::new(kind, label, &given, start.clock);
+            let beside = Beside::new(kind, &given, start.clock);
             let name = kind.method.name();
             leg.beside
                 .extend(done.keep(&format!("{what}: {name}"), beside));

@@ -96,6 +96,7 @@ impl<'g> Core<'g> {
             error: self.grid.error_of_spec(layers),
             memory: self.grid.counts.spec_memory(layers),
             of_fragment: Some(triptych_gpu::abuffer::NODE),
+            bands: 1,
             work: self.work(work),
         }
     }

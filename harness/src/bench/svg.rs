@@ -6,6 +6,7 @@
 
 mod abuffer;
 mod axis;
+mod bars;
 mod mark;
 
 use maud::{Markup, PreEscaped, html};
@@ -13,6 +14,7 @@ use maud::{Markup, PreEscaped, html};
 use super::Bench;
 use crate::text::clean;
 use axis::{Horizontal, Vertical};
+pub(super) use bars::{Bar, Bars};
 use mark::mark;
 
 /// Decibels from which on a picture counts as right.
@@ -43,6 +45,7 @@ const STYLE: &str = "
 .front .s4 { stroke: #a1308a; color: #a1308a; } .front .s5 { stroke: #0d7a86; color: #0d7a86; }
 .front .s6 { stroke: #b3141d; color: #b3141d; } .front .s7 { stroke: #6344b8; color: #6344b8; }
 .front .mark { fill: currentColor; stroke-width: 1.2; }
+.front .b0 { fill: #a0a6ab; } .front .b1 { fill: #0b57a4; } .front .b2 { fill: #d98a3d; }
 @media (prefers-color-scheme: dark) {
 .front text { fill: #e6e6e3; }
 .front .soft { fill: #a0a6ab; }
@@ -53,6 +56,7 @@ const STYLE: &str = "
 .front .s2 { stroke: #f0a860; color: #f0a860; } .front .s3 { stroke: #6fd394; color: #6fd394; }
 .front .s4 { stroke: #e79ad6; color: #e79ad6; } .front .s5 { stroke: #6fd0da; color: #6fd0da; }
 .front .s6 { stroke: #ff8f8a; color: #ff8f8a; } .front .s7 { stroke: #b8a3f5; color: #b8a3f5; }
+.front .b0 { fill: #6b7278; } .front .b1 { fill: #8cbcf0; } .front .b2 { fill: #f0a860; }
 }
 ";
 
@@ -68,6 +72,8 @@ pub(super) struct Plot {
     pub(super) legend: Vec<String>,
     /// One below the other.
     pub(super) panels: Vec<Panel>,
+    /// Below them.
+    pub(super) bars: Vec<Bars>,
 }
 
 /// A scene.
@@ -103,7 +109,8 @@ pub fn element(bench: &Bench) -> Markup {
 fn front(plot: &Plot, space: Option<&str>) -> Markup {
     let legend = LEGEND_LINE * plot.legend.len().div_ceil(LEGEND_COLUMNS) as f64;
     let top = 60.0 + legend;
-    let height = top + PANEL * plot.panels.len() as f64;
+    let end = top + PANEL * plot.panels.len() as f64;
+    let height = end + plot.bars.iter().map(Bars::height).sum::<f64>();
     html! {
         svg.front xmlns=[space] role="img" viewBox=(format!("0 0 {WIDTH} {height}")) {
             title { (clean(&plot.words)) }
@@ -117,6 +124,10 @@ fn front(plot: &Plot, space: Option<&str>) -> Markup {
             @for (at, leg) in plot.legend.iter().enumerate() { (entry(at, leg)) }
             @for (at, own) in plot.panels.iter().enumerate() {
                 g transform=(format!("translate(0 {})", top + PANEL * at as f64)) { (panel(own)) }
+            }
+            @for (at, own) in plot.bars.iter().enumerate() {
+                @let before: f64 = plot.bars[..at].iter().map(Bars::height).sum();
+                g transform=(format!("translate(0 {})", end + before)) { (own.markup()) }
             }
         }
     }

@@ -105,7 +105,7 @@ pub fn lines(bench: &Bench) -> Vec<String> {
         lines.extend([String::new(), section.heading]);
         let mut table = vec![section.columns];
         table.extend(section.rows);
-        lines.extend(aligned(&table, 2));
+        lines.extend(aligned(&table, section.names));
     }
     lines
 }

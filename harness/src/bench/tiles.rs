@@ -1,7 +1,10 @@
-//! The same frame by tiles: first its pictures are compared, then it is timed.
+//! The same frame by tiles: first its lists and pictures are compared, then it is timed.
 
-use triptych_gpu::tiles::{self, Span, Timed};
+use triptych_gpu::frame::Band;
+use triptych_gpu::raster::Rasterizer;
+use triptych_gpu::tiles::{self, Banded, Options, Span, Way};
 use triptych_gpu::timer::Timer;
+use triptych_spec::abuffer::Opaque;
 
 use super::Method;
 use super::error::Error;
@@ -14,9 +17,8 @@ use crate::replay::tiles::longest;
 pub(super) struct ByTiles<'r> {
     method: Method,
     grid: &'r Grid,
-    timed: Timed<'r, 'r>,
+    timed: Banded<'r, 'r>,
     timer: Timer,
-    spans: Vec<Span>,
     errors: Vec<(u32, Error)>,
     /// Seconds of each part, round by round.
     rounds: Vec<Vec<f64>>,
@@ -26,49 +28,25 @@ impl<'r> ByTiles<'r> {
     /// Sets it up, and compares every picture.
     pub(super) fn new(method: Method, start: &Start<'r>) -> Result<Self, Refusal> {
         let (label, rasterizer, grid) = (&start.label, start.rasterizer, start.grid);
-        let Some(opaque) = grid.opaque() else {
-            let words = "more fragments than a replay holds".to_owned();
-            return Err(Refusal::Skipped(words));
+        let way = match method {
+            Method::Linked => Way::Linked,
+            Method::Local => Way::Local,
+            _ => Way::Runs,
         };
-        let options = tiles::Options {
-            opaque,
-            depth_test: start.options.depth_test,
-            background: start.options.background,
-            capacity: None,
-            drawn: tiles::DRAWN,
-        };
-        // What is blended at once leaves no lists: its pictures are compared alone.
-        let bands = match method {
-            Method::Linked => tiles::run_linked(rasterizer, options, longest)?.bands,
-            Method::Local => Vec::new(),
-            _ => tiles::run(rasterizer, options)?.bands,
-        };
-        for band in bands {
-            if let Some(lists) = band.sorted {
-                grid.sorted(label, band.band, lists)?;
-            }
-        }
-        let shown = grid.shown();
-        let timed = match method {
-            Method::Linked => Timed::linked(rasterizer, &options, &shown, longest)?,
-            Method::Local => Some(Timed::local(rasterizer, &options, &shown)?),
-            _ => Some(Timed::new(rasterizer, &options, &shown)?),
-        };
-        let astray = || Refusal::Wrong(format!("{label}: links of tiles lead astray"));
-        let timed = timed.ok_or_else(astray)?;
-        let (seen, must) = (u64::from(timed.fragments), grid.fragments());
+        compare_lists(way, start)?;
+        let (options, layers) = (options(start, grid.opaque()), grid.shown());
+        let timed = (way, &layers[..]);
+        let timed = Banded::new(rasterizer, &options, timed, &grid.rows, start.budget)?;
+        let (seen, must) = (timed.fragments(), grid.fragments());
         if seen != must && method != Method::Local {
             let words = format!("{label}: tiles count {seen} fragments, must be {must}");
             return Err(Refusal::Wrong(words));
         }
-        let spans: Vec<Span> = timed.spans().collect();
-        let count = u32::try_from(spans.len()).expect("a few parts");
         let mut tiles = Self {
             method,
             grid,
-            timer: Timer::new(rasterizer.gpu, start.clock, count)?,
+            timer: Timer::new(rasterizer.gpu, start.clock, timed.spans())?,
             timed,
-            spans,
             errors: Vec::new(),
             rounds: Vec::new(),
         };
@@ -109,33 +87,82 @@ impl<'r> ByTiles<'r> {
     pub(super) fn measured(&self, surfaces: &Measured) -> Vec<Measured> {
         let counts = &self.grid.counts;
         // Lists that are too long for registers are merged from one array into another.
-        let merged = self.method == Method::Tiles && self.spans.contains(&Span::Sort);
+        let parts = self.timed.parts();
+        let merged = self.method == Method::Tiles && parts.contains(&Span::Sort);
         let frame = |(layers, error): &(u32, Error)| {
             let belongs = |span: &Span| match span {
                 Span::Shade(n) | Span::Local(n) => n == layers,
                 _ => true,
             };
-            let spans = self.spans.iter().enumerate();
+            let spans = parts.iter().enumerate();
             let spans = spans.filter(|(_, span)| belongs(span));
             let seconds = |at: usize| self.rounds.iter().map(|r| r[at]).collect();
-            let mut parts = surfaces.parts.clone();
-            parts.extend(spans.map(|(at, span)| (name(*span), seconds(at))));
-            let work = counts.by_tiles(self.timed.binned.into(), *layers, self.method);
+            let mut own = surfaces.parts.clone();
+            own.extend(spans.map(|(at, span)| (name(*span), seconds(at))));
+            let work = counts.by_tiles(self.timed.binned(), *layers, self.method);
             Measured {
                 method: self.method,
                 layers: *layers,
-                parts,
+                parts: own,
                 error: *error,
                 memory: counts.triangles() + self.timed.bytes(),
                 of_fragment: match self.method {
                     Method::Local => None,
                     method => Some(method.entry() * (1 + u64::from(merged))),
                 },
+                bands: u32::try_from(self.timed.bands()).unwrap_or(u32::MAX),
                 work: work.and(surfaces.work),
             }
         };
         self.errors.iter().map(frame).collect()
     }
+}
+
+fn options<'o>(start: &Start<'_>, opaque: &'o Opaque) -> Options<'o> {
+    Options {
+        opaque,
+        depth_test: start.options.depth_test,
+        background: start.options.background,
+        capacity: None,
+        drawn: tiles::DRAWN,
+    }
+}
+
+/// Compares sorted lists with the spec's: of the whole target, or of those rows that are looked at, each
+/// as a target of its own. What is blended at once leaves no lists: its pictures are compared alone.
+fn compare_lists(way: Way, start: &Start<'_>) -> Result<(), Refusal> {
+    let (grid, whole) = (start.grid, start.rasterizer);
+    if way == Way::Local {
+        return Ok(());
+    }
+    for (rows, run) in grid.alone() {
+        let own = match rows == Band::whole(whole.size) {
+            true => None,
+            false => {
+                let (gpu, kernels, faces) = (whole.gpu, whole.kernels, &grid.faces);
+                let prims = &run.primitives;
+                Some(Rasterizer::new(gpu, kernels, whole.path, prims, faces)?)
+            }
+        };
+        let rasterizer = own.as_ref().unwrap_or(whole);
+        let options = options(start, &run.opaque);
+        let bands = match way {
+            Way::Linked => tiles::run_linked(rasterizer, options, longest)?.bands,
+            _ => tiles::run(rasterizer, options)?.bands,
+        };
+        for band in bands {
+            let at = Band {
+                first: rows.first + band.band.first,
+                ..band.band
+            };
+            let lists = band.sorted.ok_or_else(|| {
+                let label = &start.label;
+                Refusal::Wrong(format!("{label}, by tiles: damaged lists"))
+            })?;
+            grid.sorted(&start.label, at, lists)?;
+        }
+    }
+    Ok(())
 }
 
 /// A part's name in results.
@@ -149,3 +176,6 @@ fn name(span: Span) -> &'static str {
         Span::Local(_) => "local",
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,6 +15,7 @@ use super::Extent;
 use super::gpu::{From, GpuLeg};
 use super::rivals::Listed;
 use super::rows::Rows;
+use super::spec::SpecRun;
 use super::tiles::part;
 use crate::cause::Cause;
 use crate::compare::lists::{certify, compare_overflowed};
@@ -86,13 +87,10 @@ fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, layout: Layout) -> Option<St
         return Some("the driver's sub-pixel grid is unknown".to_owned());
     }
     let spec = &leg.spec.value;
-    if layout == Layout::Ordered {
-        let most = steps_of_an_invocation(leg);
-        if most > STEPS {
-            return Some(format!(
-                "plan: an invocation may take {most} steps along lists, more than its {STEPS}"
-            ));
-        }
+    if layout == Layout::Ordered
+        && let Some(words) = too_many_steps(spec, leg.path)
+    {
+        return Some(format!("plan: {words}"));
     }
     let is_slow = leg.adapter.gpu.info.device_type == DeviceType::Cpu;
     let work = (spec.primitives.prims.len() + spec.sorted.fragments.len()) as u64;
@@ -107,7 +105,7 @@ fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, layout: Layout) -> Option<St
 }
 
 /// Slots of arrays that are as long as the longest list.
-fn slots(sorted: &Sorted) -> u64 {
+pub fn slots(sorted: &Sorted) -> u64 {
     let lengths = || {
         sorted
             .offsets
@@ -118,25 +116,33 @@ fn slots(sorted: &Sorted) -> u64 {
 }
 
 /// Steps of all fragments along their lists.
-fn steps(sorted: &Sorted) -> u64 {
+pub fn steps(sorted: &Sorted) -> u64 {
     let lengths = sorted.offsets.windows(2);
     lengths.map(|run| u64::from(run[1] - run[0]).pow(2)).sum()
 }
 
+/// Why lists cannot be put in order while they are built on a path; `None` if they can.
+pub fn too_many_steps(spec: &SpecRun, path: Path) -> Option<String> {
+    let most = steps_of_an_invocation(spec, path);
+    let words =
+        || format!("an invocation may take {most} steps along lists, more than its {STEPS}");
+    (most > STEPS).then(words)
+}
+
 /// The most steps of an invocation along lists that are in order: one for each node, and one where
-/// another invocation was first to hang a node there. On the compute paths it has all of a row of a triangle.
-fn steps_of_an_invocation(leg: &GpuLeg<'_>) -> u64 {
-    let spec = &leg.spec.value;
-    let width = leg.scene.size.width;
+/// another invocation was first to hang a node there. It has a fragment, and on the compute paths all of a
+/// row of a triangle.
+fn steps_of_an_invocation(spec: &SpecRun, path: Path) -> u64 {
+    let pixels = 0..spec.sorted.offsets.len() - 1;
+    let steps = |pixel: usize| 2 * spec.sorted.list(pixel).len() as u64;
+    if path == Path::Fragment {
+        return pixels.map(steps).max().unwrap_or(0);
+    }
+    let width = spec.primitives.size.width;
     let mut most = BTreeMap::<(u32, u32), u64>::new();
-    for pixel in 0..spec.sorted.offsets.len() - 1 {
-        let list = spec.sorted.list(pixel);
-        for f in list {
-            let row = match leg.path {
-                Path::Fragment => f.pixel,
-                Path::Compute | Path::Native => f.pixel / width,
-            };
-            *most.entry((f.prim, row)).or_default() += 2 * list.len() as u64;
+    for pixel in pixels {
+        for f in spec.sorted.list(pixel) {
+            *most.entry((f.prim, f.pixel / width)).or_default() += steps(pixel);
         }
     }
     most.into_values().max().unwrap_or(0)

@@ -13,7 +13,9 @@ pub fn section(bench: Option<&Bench>) -> Markup {
             p {
                 "What the nearest 1, 2, 4, … layers of each pixel cost, and how far their picture "
                 "is from that of all layers: PSNR of linear colours with peak 1. " em { "exact*" }
-                ": no difference, or one of rounding alone. Each leg's faster method is shown."
+                ": no difference, or one of rounding alone. Each leg's faster method is shown. Below, where "
+                "they were measured, the same lists in several layouts: how long building them takes, "
+                "and what is made of them, with bytes of a fragment and of all buffers."
             }
             @match bench {
                 None => p.skipped { "Not run yet: " code { "cargo triptych bench abuffer" } },

@@ -2,7 +2,7 @@
 
 use triptych_gpu::layouts::{Layout, Options, Timed, run};
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_gpu::tiles;
+use triptych_gpu::tiles::{self, Banded, Way};
 use triptych_harness::compare::image;
 use triptych_harness::compare::lists::certify;
 use triptych_harness::compare::{Judgement, compare};
@@ -210,7 +210,7 @@ fn every_layout_shows_the_nearest() {
 #[test]
 fn tiles_show_the_nearest() {
     let numbers = numbers();
-    each(&[1], |words, layers, rasterizer| {
+    each(&[1, 4], |words, layers, rasterizer| {
         let surfaces = opaque(&layers.scene, &layers.primitives);
         let sorted = lists(layers, &surfaces, true);
         let options = tiles::Options {
@@ -220,15 +220,18 @@ fn tiles_show_the_nearest() {
             capacity: None,
             drawn: tiles::DRAWN,
         };
-        let all = [
-            ("shade", tiles::Timed::new(rasterizer, &options, &numbers)),
-            ("local", tiles::Timed::local(rasterizer, &options, &numbers)),
-            (
-                "linked",
-                tiles::Timed::linked(rasterizer, &options, &numbers),
-            ),
+        let ends = sorted
+            .offsets
+            .iter()
+            .step_by(rasterizer.size.width as usize);
+        let rows: Vec<u32> = ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect();
+        let ways = [
+            ("shade", Way::Runs),
+            ("local", Way::Local),
+            ("linked", Way::Linked),
         ];
-        for (stage, timed) in all {
+        for (stage, way) in ways {
+            let timed = Banded::new(rasterizer, &options, (way, &numbers), &rows, u64::MAX);
             let timed = timed.unwrap_or_else(|e| panic!("{words}, {stage}: {e}"));
             let mut seen = Vec::new();
             let shown = timed.pictures(|n, picture| seen.push((n, picture)));

@@ -22,6 +22,7 @@ fn attempts(size: Size, binding: u64) -> Attempts {
         bands: vec![Band::whole(size)],
         capacity: 2 * size.width * size.height,
         known: None,
+        side: 1,
     }
 }
 

@@ -10,7 +10,7 @@ use crate::bench::scene::Measured;
 
 impl Leg<'_> {
     /// How many bands the lists are made in.
-    pub(in crate::bench) fn bands(&self) -> u32 {
+    fn bands(&self) -> u32 {
         u32::try_from(self.timed.bands()).unwrap_or(u32::MAX)
     }
 
@@ -54,6 +54,7 @@ impl Leg<'_> {
             error,
             memory: counts.triangles() + self.timed.bytes(method == Method::Sort),
             of_fragment: Some(NODE),
+            bands: self.bands(),
             work: works.fold(Work::default(), Work::and),
         }
     }

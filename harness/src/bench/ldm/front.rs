@@ -25,6 +25,7 @@ pub fn svg(sweep: &Sweep) -> String {
             .iter()
             .map(|scene| panel(&sweep.rows, &legs, scene))
             .collect(),
+        bars: Vec::new(),
     })
 }
 

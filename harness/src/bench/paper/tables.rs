@@ -1,15 +1,23 @@
 //! Our figures beside the paper's, as tables.
 
+mod layouts;
+
 use super::super::error::decibels;
 use super::super::table::mebibytes;
 use super::super::{Bench, Method, Row};
 use super::{DRAGON, FIGURE, FIGURE_ALPHA, MECHA, SAMPLES, TABLE, TEAPOT};
 use crate::text::clean;
 
-/// A table with a heading; the first two columns are names.
+pub(in crate::bench) use layouts::{LaidOut, laid_out};
+
+/// A table with a heading.
 pub struct Section {
     /// What it shows.
     pub heading: String,
+    /// How to read it.
+    pub note: &'static str,
+    /// The first columns, which are words.
+    pub names: usize,
     /// Of the columns.
     pub columns: Vec<String>,
     /// Cells.
@@ -19,10 +27,36 @@ pub struct Section {
 /// Nothing to show.
 const NONE: &str = "–";
 
+const TABLE_NOTE: &str = "*Over list*: the median of the frame, from its vertices to the picture, over that of \
+    the same leg's linked lists (the faster of *insertion* and *sort*). *Paper's*: the same ratio of its frames per \
+    second. The rows: *linked list*, one counter for all nodes; *precalc*, fragments counted, added up, and put into \
+    runs of one array by a second pass over the triangles; *bucket depth peeling*, an array as long as the longest list \
+    for each pixel; *depth peeling*, a pass over the triangles for each layer; *dual depth peeling*, nearest and farthest \
+    at once; *lists by tiles*, the fastest of our three techniques that draw tile by tile. – stands for what the paper \
+    has no figure of, or was not measured here: the list at the top says why.";
+
+const FIGURE_NOTE: &str = "Only so many nearest layers of each pixel are shown, which costs time and takes error away. \
+    *Over all*: the median of the frame over that of all layers; *paper's*: the same of its frames per second. PSNR in \
+    decibels of linear colours against all layers, *exact* where nothing differs; *largest*: the largest difference of \
+    a channel. Alpha blending blends the triangles as they come, whatever their depth.";
+
+const SAMPLES_NOTE: &str = "Masks of what a triangle covers in the nodes, a surface for each sample, and the mean of the \
+    samples. *Over one*: the median of the frame over that of one sample a pixel.";
+
+const FRAMES_NOTE: &str = "*As fast*: the frame of the hardware's rasteriser with linked lists, over the row's. *Parts* \
+    are medians in ms: *vertices* is transform, clip and snap; by tiles, *bin* puts triangles in bins, *place* counts \
+    fragments, *fill* stores them, *local* draws without lists in memory.";
+
+const MEMORY_NOTE: &str = "All buffers of a frame at once: triangles, surfaces, lists, picture. *Bytes/fragment*: of a \
+    fragment that is stored, its colour included where it is; twice those of an entry where long lists are merged from \
+    one array into another. *Bands* of rows are drawn one after another in the same buffers.";
+
 /// The tables of the paper's scenes that were measured.
 pub fn sections(bench: &Bench) -> Vec<Section> {
     let all = [table(bench), figure(bench), samples(bench), frames(bench)];
-    let some = all.into_iter().chain([memory(bench)]);
+    let some = all
+        .into_iter()
+        .chain([layouts::table(bench), memory(bench)]);
     some.filter(|section| !section.rows.is_empty()).collect()
 }
 
@@ -73,6 +107,8 @@ fn table(bench: &Bench) -> Section {
         heading: "The paper's Table 1: teapot and dragon, 512 x 512, time of a frame over that of \
                   the same leg's linked lists"
             .to_owned(),
+        note: TABLE_NOTE,
+        names: 2,
         columns: columns(&[
             "leg",
             "technique",
@@ -126,6 +162,8 @@ fn figure(bench: &Bench) -> Section {
         heading: "The paper's Figure 4: the stand-in for its mecha, 1280 x 720, time of a frame \
                   over that of all layers"
             .to_owned(),
+        note: FIGURE_NOTE,
+        names: 2,
         columns: columns(&[
             "leg", "layers", "time, ms", "frames/s", "over all", "paper's", "PSNR, dB", "largest",
         ]),
@@ -164,6 +202,8 @@ fn samples(bench: &Bench) -> Section {
     Section {
         heading: "Samples a pixel: the dragon, 512 x 512, linked lists over those of one sample"
             .to_owned(),
+        note: SAMPLES_NOTE,
+        names: 2,
         columns: columns(&[
             "leg", "samples", "time, ms", "over one", "paper's", "memory",
         ]),
@@ -205,6 +245,8 @@ fn frames(bench: &Bench) -> Section {
         heading: "Whole frames, from vertices to the picture of all layers: how many times as \
                   fast as the hardware's path with linked lists"
             .to_owned(),
+        note: FRAMES_NOTE,
+        names: 2,
         columns: columns(&["leg", "scene", "time, ms", "as fast", "parts, ms"]),
         rows,
     }
@@ -233,6 +275,8 @@ fn memory(bench: &Bench) -> Section {
     }
     Section {
         heading: "Memory at most, and of a stored fragment".to_owned(),
+        note: MEMORY_NOTE,
+        names: 2,
         columns: columns(&["scene", "technique", "memory", "bytes/fragment", "bands"]),
         rows,
     }

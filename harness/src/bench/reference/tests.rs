@@ -55,6 +55,7 @@ fn rows_are_compared_of_more_than_is_held() {
     );
     assert_eq!(rows.rows, whole.rows);
     assert_eq!(rows.counts, whole.counts);
+    assert!(rows.opaque() == whole.opaque(), "surfaces of all rows");
     let run = whole.whole().unwrap();
     let image: Vec<_> = whole.pieces[0].exact.value.clone();
     #[expect(clippy::cast_possible_truncation, reason = "as a device has it")]

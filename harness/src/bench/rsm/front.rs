@@ -33,6 +33,7 @@ pub fn svg(frames: &Frames) -> String {
             .iter()
             .map(|scene| panel(frames, &legs, scene))
             .collect(),
+        bars: Vec::new(),
     })
 }
 

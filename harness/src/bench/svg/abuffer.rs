@@ -1,7 +1,8 @@
-//! The front of `bench abuffer`: numbers of nearest layers.
+//! The front of `bench abuffer`: numbers of nearest layers, and all of them in several layouts.
 
+use super::super::paper::{LaidOut, laid_out};
 use super::super::{Bench, Row, table};
-use super::{Line, Panel, Plot};
+use super::{Bar, Bars, Line, Panel, Plot};
 
 /// The front of a run.
 pub(super) fn plot(bench: &Bench) -> Plot {
@@ -20,6 +21,28 @@ pub(super) fn plot(bench: &Bench) -> Plot {
             .iter()
             .map(|scene| panel(bench, &legs, scene))
             .collect(),
+        bars: laid_out(bench).iter().map(bars).collect(),
+    }
+}
+
+fn bars(own: &LaidOut<'_>) -> Bars {
+    let bar = |row: &&Row| {
+        let bytes = match row.of_fragment {
+            Some(bytes) => format!("{bytes} B a fragment, "),
+            None => String::new(),
+        };
+        let parts = [row.of_parts(&["opaque"]), row.build(), row.resolve()];
+        let (ms, memory) = (parts.iter().sum::<f64>(), table::mebibytes(row.memory));
+        Bar {
+            name: row.method.name().to_owned(),
+            words: format!("{ms:.2} ms, {bytes}{memory}"),
+            parts,
+        }
+    };
+    let leg = |(leg, rows): &(&str, Vec<&Row>)| ((*leg).to_owned(), rows.iter().map(bar).collect());
+    Bars {
+        heading: format!("{}: all layers, lists in several layouts", own.scene),
+        legs: own.legs.iter().map(leg).collect(),
     }
 }
 

@@ -32,6 +32,7 @@ const FILE_MAX: u64 = 1 << 26;
 #[command(after_help = "Examples:\n  \
     triptych bench abuffer                    the paper's tables, then three real meshes, every adapter and path\n  \
     triptych bench abuffer --paper --adapter llvmpipe     the paper's tables alone\n  \
+    triptych bench abuffer --full --adapter nvidia        2^30 fragments, in bands of rows\n  \
     triptych bench abuffer sponza --rivals --samples 1,4 --budget 2\n  \
     triptych bench abuffer bunny --layers 1,2,4 --runs 31\n  \
     triptych bench abuffer --adapter nvidia --path compute --out results\n\n\
@@ -59,10 +60,10 @@ pub struct Args {
     /// Samples a pixel, in turn: 1, 2, 4, 8 [default: those of the scene]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = samples)]
     samples: Vec<u32>,
-    /// Peeling, alpha blending and others beside the lists, whatever they take
+    /// Other layouts of the lists, peeling, alpha blending and others beside them, whatever they take
     #[arg(long)]
     rivals: bool,
-    /// Memory of the lists in GiB, beyond which they are made in bands [default: 1 on a software
+    /// Memory of lists, and of tiles, in GiB, beyond which they are made in bands [default: 1 on a software
     /// driver, 16 on a board]
     #[arg(long, value_name = "GIB", value_parser = gibibytes)]
     budget: Option<u64>,

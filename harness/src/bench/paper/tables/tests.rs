@@ -23,6 +23,7 @@ fn bench() -> Bench {
         row(DRAGON, hardware, Method::Insertion, 58, 3.0),
         row(DRAGON, hardware, Method::Sort, 58, 7.0),
         row(DRAGON, hardware, Method::Peel, 58, 15.0),
+        row(DRAGON, hardware, Method::Precalc, 58, 5.0),
         row(DRAGON, compute, Method::Sort, 58, 1.0),
         row(DRAGON, compute, Method::Tiles, 58, 0.25),
         row(MECHA, hardware, Method::Insertion, 8, 4.0),
@@ -55,7 +56,8 @@ fn ratios_are_of_whole_frames_over_the_fastest_list() {
     let of = |leg: &str, name| cells(&section, [leg, name])[3..].join(" ");
     assert_eq!(of("gpu@a/fragment", "linked list"), "4.00 1.00 1.00");
     assert_eq!(of("gpu@a/fragment", "depth peeling"), "16.00 4.00 7.51");
-    assert_eq!(of("gpu@a/fragment", "precalc"), "– – 2.36");
+    assert_eq!(of("gpu@a/fragment", "precalc"), "6.00 1.50 2.36");
+    assert_eq!(of("gpu@a/compute", "precalc"), "– – 2.36");
     assert_eq!(of("gpu@a/compute", "lists by tiles"), "1.25 0.62 –");
     assert!(
         section
