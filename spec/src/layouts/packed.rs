@@ -16,13 +16,25 @@ pub fn rounds_to(channel: f32, byte: u32) -> bool {
     (f64::from(byte) - exact).abs() <= BYTE_ERROR && byte <= 255
 }
 
-/// A channel as it comes out of its byte: a quotient, which is within 2.5 units.
+/// The bytes that may stand for a channel: two next to each other if it is half-way between, else one twice.
+#[expect(clippy::cast_possible_truncation, reason = "0 to 255")]
+#[expect(clippy::cast_sign_loss, reason = "0 to 255")]
+fn bytes(channel: f32) -> [u32; 2] {
+    let near = (255.0 * f64::from(channel.clamp(0.0, 1.0))).floor() as u32;
+    match [near, near + 1].map(|byte| rounds_to(channel, byte)) {
+        [true, true] => [near, near + 1],
+        [false, _] => [near + 1; 2],
+        [true, false] => [near; 2],
+    }
+}
+
+/// A channel as it comes out of its byte, or of either: a quotient, which is within 2.5 units.
 fn unpacked(channel: f32) -> Bounded {
-    let value = f64::from(channel.clamp(0.0, 1.0));
-    let bound = BYTE_ERROR / 255.0;
+    let [low, high] = bytes(channel).map(|byte| f64::from(byte) / 255.0);
+    let bound = 0.5 * (high - low);
     Bounded {
-        value,
-        bound: bound + 2.5 * U * (value + bound) + TINY,
+        value: 0.5 * (low + high),
+        bound: bound + 2.5 * U * high + TINY,
     }
 }
 
@@ -30,8 +42,8 @@ fn unpacked(channel: f32) -> Bounded {
 /// cut to 0 to 1 and rounded to 256 steps; the mean, where pixels have several samples. Opaque surfaces and
 /// the background are not in lists, and exact.
 ///
-/// The value is that of colours before rounding; the bound holds what half a step of every channel and
-/// opacity makes of it. Each operation carries the errors of its operands, through the blend. A product of
+/// The value is that of rounded colours; where a channel lies half-way between two steps, so that either may
+/// be taken, it is that of their middle, and the bound holds what half a step makes of it. Each operation carries the errors of its operands, through the blend. A product of
 /// three may be taken in any order: each order meets as many roundings, of operands within the same bounds,
 /// all of them about 1 at most, and what is flushed is covered by two more times [`TINY`].
 pub fn packed(
@@ -107,15 +119,24 @@ mod tests {
         assert!(!rounds_to(7.5, 256), "no byte");
     }
 
-    /// One layer: half a step of the colour, and of the opacity between colour and background.
+    /// One layer. Three quarters of 255 are rounded in one way alone; half of it is half-way, as an opacity as well.
     #[test]
-    fn half_a_step_of_each_channel() {
-        let [red, ..] = over(&[[0.25, 0.5, 0.75, 0.5]], [1.0, 0.0, 0.0]);
+    fn half_a_step_where_either_may_be_taken() {
+        let [red, green, _] = over(&[[0.75, 0.5, 0.0, 1.0]], [1.0, 0.0, 0.0]);
+        assert!((red.value - 191.0 / 255.0).abs() < 1e-12, "{red:?}");
+        assert!(red.bound < 1e-6, "{red:?}");
         let step = 0.5 / 255.0;
-        assert!((red.value - 0.625).abs() < 1e-12, "{red:?}");
-        // |a| dc + |c - b| da, at least; products of errors and roundings are small.
-        let least = 0.5 * step + 0.25 * step;
-        let most = 0.5 * step + (0.25 + 1.0) * step + step * step;
-        assert!(red.bound >= least && red.bound <= 1.01 * most, "{red:?}");
+        assert!((green.value - 0.5).abs() < 1e-12, "{green:?}");
+        assert!(
+            green.bound >= step && green.bound <= 1.01 * step,
+            "{green:?}"
+        );
+        let [red, ..] = over(&[[0.75, 0.0, 0.0, 0.5]], [1.0, 0.0, 0.0]);
+        // Of a layer and what is behind it, each with half a step of the opacity.
+        let most = (1.0 + 191.0 / 255.0) * step;
+        assert!(
+            red.bound >= step * 64.0 / 255.0 && red.bound <= 1.01 * most,
+            "{red:?}"
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! What is left of colours in bytes.
 
 use proptest::prelude::*;
-use triptych_spec::abuffer::{opaque, resolve};
+use triptych_spec::abuffer::opaque;
 use triptych_spec::layouts::{packed, rounds_to};
 
 use super::super::abuffer::{Layers, coloured};
@@ -40,20 +40,19 @@ fn blended(layers: &[[f32; 4]], behind: [f32; 3]) -> [f32; 3] {
 proptest! {
     #![proptest_config(config(256))]
 
-    /// Whichever way channels are rounded, the blend stays inside the bound; and as long as nothing is cut,
-    /// the value is that of full precision.
+    /// Whichever way channels are rounded, the blend stays inside the bound; and where each can be rounded in
+    /// one way alone, the bound holds what `f32` makes of it and no more.
     #[test]
     fn rounded_colours_stay_inside_the_bound(layers in coloured(soup(1..24)), up: bool) {
         let Layers { scene, primitives } = &layers;
         let surfaces = opaque(scene, primitives);
         let sorted = lists(&layers, &surfaces, true);
         let must = packed(scene, primitives, &surfaces, &sorted);
-        let exact = resolve(scene, primitives, &surfaces, &sorted);
         let colour = |prim: u32| scene.triangles[primitives.source[prim as usize] as usize].colour;
         for (pixel, must) in must.iter().enumerate() {
             let list = sorted.list(pixel);
-            let cut = |c: &f32| !(0.0..=1.0).contains(c);
-            let is_cut = list.iter().any(|f| colour(f.prim).iter().any(cut));
+            let either = |c: &f32| byte(*c, true) != byte(*c, false);
+            let is_open = list.iter().any(|f| colour(f.prim).iter().any(either));
             let bytes: Vec<[f32; 4]> =
                 list.iter().map(|f| colour(f.prim).map(|c| byte(c, up))).collect();
             let behind = match surfaces.prim[pixel] {
@@ -62,12 +61,11 @@ proptest! {
             };
             let seen = blended(&bytes, behind);
             for channel in 0..3 {
-                let (must, exact) = (must[channel], exact[pixel][channel]);
+                let must = must[channel];
                 prop_assert!(must.admits(f64::from(seen[channel])), "{:?} {:?}", must, seen);
-                if !is_cut {
-                    prop_assert!((must.value - exact.value).abs() < 1e-12, "{:?} {:?}", must, exact);
-                }
-                prop_assert!(list.is_empty() || must.bound > exact.bound, "half a step");
+                // Each layer meets a few operations on numbers of about 1, each within 2^-21 of it.
+                let most = 1e-5 * (list.len() + 1) as f64;
+                prop_assert!(is_open || must.bound < most, "{:?}: {:?}", list.len(), must);
             }
         }
     }
