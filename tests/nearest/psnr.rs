@@ -25,10 +25,6 @@ use triptych_spec::raster::{self, samples_of};
 use triptych_spec::scene::{Scene, Size};
 use triptych_spec::vertex::{Primitives, primitives};
 
-/// Fragments of a scene beyond which the test takes too long: `layers-20000`, `dragon-full`, `furball` and
-/// both of Sponza.
-const FRAGMENTS: u64 = 1 << 19;
-
 /// A scene's picture of each number of layers, and of all.
 struct Pictures {
     scene: Scene,
@@ -39,7 +35,7 @@ struct Pictures {
 }
 
 impl Pictures {
-    /// Of a scene that is loaded; `None` if it has no transparent layers, or too many.
+    /// Of a scene that is loaded; `None` if it has no transparent layers.
     fn of(loaded: Loaded) -> Option<Self> {
         let Loaded { scene, .. } = loaded;
         if scene
@@ -50,9 +46,6 @@ impl Pictures {
             return None;
         }
         let primitives = primitives(&scene, 8);
-        if raster::count(&primitives) > FRAGMENTS {
-            return None;
-        }
         let opaque = abuffer::opaque(&scene, &primitives);
         let lists = abuffer::build(&scene, &primitives, &opaque, true, u32::MAX);
         let sorted = abuffer::sort(&lists);

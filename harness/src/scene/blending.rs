@@ -127,6 +127,32 @@ mod tests {
     }
 
     #[test]
+    fn reductions_are_read() {
+        let read = |text: &str| {
+            let reduced = toml::from_str::<Reduced>(text);
+            reduced
+                .map(|r| (r.0.side(), r.0.falloff))
+                .map_err(|e| e.message().to_owned())
+        };
+        assert_eq!(read("side = 4\nfalloff = 2.5"), Ok((4, 2.5)));
+        assert_eq!(read("side = 1\nfalloff = 0"), Ok((1, 0.0)));
+        for (text, words) in [
+            ("side = 3\nfalloff = 1", "side = 3 is not 1, 2 or 4"),
+            ("side = 8\nfalloff = 1", "side = 8 is not 1, 2 or 4"),
+            (
+                "side = 2\nfalloff = -1",
+                "falloff = -1 is outside 0 to 1000000",
+            ),
+            (
+                "side = 2\nfalloff = nan",
+                "falloff = NaN is outside 0 to 1000000",
+            ),
+        ] {
+            assert_eq!(read(text), Err(words.to_owned()));
+        }
+    }
+
+    #[test]
     fn mistakes_are_named() {
         for (text, words) in [
             (
