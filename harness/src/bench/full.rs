@@ -10,6 +10,7 @@ pub const SCENES: [Scene; 2] = [
         text: include_str!("full/layers.toml"),
         layers: &[8],
         samples: &[],
+        rivals: false,
         boards: false,
     },
     Scene {
@@ -17,6 +18,7 @@ pub const SCENES: [Scene; 2] = [
         text: include_str!("full/many.toml"),
         layers: &[8],
         samples: &[],
+        rivals: false,
         // A software driver has seconds for each hundredth of it.
         boards: true,
     },

@@ -27,6 +27,8 @@ pub struct Scene {
     pub(super) layers: &'static [u32],
     /// Samples a pixel.
     pub(super) samples: &'static [u32],
+    /// Whether techniques beside lists are measured.
+    pub(super) rivals: bool,
     /// Whether it is too much for a software driver.
     pub(super) boards: bool,
 }
@@ -47,6 +49,7 @@ pub const SCENES: [Scene; 3] = [
         text: include_str!("paper/teapot.toml"),
         layers: &[],
         samples: &[],
+        rivals: true,
         boards: false,
     },
     Scene {
@@ -54,6 +57,7 @@ pub const SCENES: [Scene; 3] = [
         text: include_str!("paper/dragon.toml"),
         layers: &[],
         samples: &[1, 2, 4, 8],
+        rivals: true,
         boards: false,
     },
     Scene {
@@ -61,6 +65,7 @@ pub const SCENES: [Scene; 3] = [
         text: include_str!("paper/mecha.toml"),
         layers: &[0, 2, 4, 8, 16, 32, 64],
         samples: &[],
+        rivals: true,
         boards: false,
     },
 ];
@@ -156,7 +161,7 @@ impl Scene {
         Asked {
             layers: options.layers.clone().or(Some(self.layers.to_vec())),
             samples,
-            rivals: !self.boards,
+            rivals: self.rivals || (options.rivals && !self.boards),
             boards: self.boards,
         }
     }

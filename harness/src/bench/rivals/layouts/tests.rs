@@ -79,13 +79,8 @@ fn a_layout_that_is_wrong_is_named() {
     let ships = Sources::shipped(false);
     assert_eq!(wrong(&gpu, "abuffer/mixed", ships.clone()), []);
     let names = |scene, (file, find, replace): (&str, &str, &str)| {
-        let found = wrong(
-            &gpu,
-            scene,
-            ships
-                .patched(file, find, replace)
-                .expect("it is there once"),
-        );
+        let patched = ships.patched(file, find, replace);
+        let found = wrong(&gpu, scene, patched.expect("it is there once"));
         let starts = |(method, words): &(Method, String)| {
             let start = format!("leg, {}", method.name());
             assert!(words.starts_with(&start), "{words}");
