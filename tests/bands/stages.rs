@@ -9,7 +9,7 @@ use super::*;
 
 /// Scenes, and adapters with room for some rows, and for fewer nodes than they need.
 const FEW: [(&str, Small); 2] = [
-    ("abuffer/quads", |gpu| gpu.restrict_memory(60_000)),
+    ("abuffer/quads", |gpu| gpu.restrict_bindings(40_000)),
     ("abuffer/msaa-thirds", |gpu| gpu.restrict_bindings(80_000)),
 ];
 

@@ -4,7 +4,8 @@
 //! test, `O` opaque fragments on `Q` pixels, `T` transparent and `U` opaque triangles,
 //! `S(n)` layers shown (the sum over pixels of `min(n, layers)`), and `M` the sum over
 //! lists of `length * ceil(log2 length)`; buffers as in `gpu/src/abuffer.wgsl`, each
-//! word counted once for each time that a kernel has to read or write it:
+//! word counted once for each time that a kernel has to read or write it, and what belongs to a triangle
+//! once a kernel, however many read it, as a cache may hold it; `H(n)` is the least of `S(n)` and `T`:
 //!
 //! | part | bytes | atomics |
 //! |---|---|---|
@@ -17,9 +18,9 @@
 //! | resolve: the same with progress and the picture so far | `140 P + 32 S(all)` | |
 //!
 //! | bin, by tiles: triangle and its face twice, the face of opaque ones as well; its number in `B` bins | `72 T + 32 (T + U) + 4 B` | `2 B` |
-//! | place: number and triangle, opaque key; length written; list read and placed, row | `40 B + 44 P` | |
-//! | fill: number and triangle, opaque key; list, row, how far it is filled; entry | `40 B + 32 P + 8 F` | |
-//! | shade: list, row, surface, picture; entries; colours shown | `40 P + 8 F + 16 S(n)` | |
+//! | place: number and triangle, opaque key; length written; list read and placed, row | `36 T + 4 B + 44 P` | |
+//! | fill: number and triangle, opaque key; list, row, how far it is filled; entry of `E` bytes | `36 T + 4 B + 32 P + E F` | |
+//! | shade: list, row, surface, picture; entries and colours shown | `40 P + E S(n) + 16 H(n)` | |
 //! | others, each time: triangle with colour, keys, picture; then surface, picture | `60 T + 12 C + 16 P`; `24 P` | |
 //!
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
@@ -110,6 +111,11 @@ impl Counts {
         self.sum(|length| length.min(n.into()))
     }
 
+    /// Triangles of so many nearest layers, at most.
+    fn faces(&self, n: u32) -> u64 {
+        self.shown(n).min(self.transparent)
+    }
+
     /// The sum over lists of something that depends on the length.
     fn sum(&self, of: impl Fn(u64) -> u64) -> u64 {
         (0_u64..)
@@ -148,9 +154,10 @@ impl Counts {
         let (entry, counted) = (method.entry(), u64::from(method == Method::Tiles));
         let (p, triangles) = (self.pixels, self.transparent + self.opaque);
         let bin = 2 * (36 * self.transparent + 16 * triangles) + 4 * binned;
-        let place = counted * (40 * binned + 4 * p + 12 * p + 28 * p);
-        let fill = 40 * binned + 4 * p + 28 * p + entry * self.fragments;
-        let shade = 16 * p + entry * self.fragments + 24 * p + 16 * self.shown(layers);
+        let drawn = 36 * self.transparent + 4 * binned;
+        let place = counted * (drawn + 4 * p + 12 * p + 28 * p);
+        let fill = drawn + 4 * p + 28 * p + entry * self.fragments;
+        let shade = 16 * p + entry * self.shown(layers) + 24 * p + 16 * self.faces(layers);
         Work {
             bytes: bin + place + fill + shade,
             atomics: 2 * binned,
@@ -213,7 +220,9 @@ mod tests {
         // Five are merged in three passes, one in none.
         assert_eq!(work(Part::Sort), must(520 + 20 * 2 * 5 * 3, 0));
         assert_eq!(work(Part::Resolve), must(700 + 352, 0));
-        let tiles = 2 * (36 * 2 + 16 * 3) + 84 * 7 + 116 * 5 + 16 * 11 + 16 * 5;
+        // Two layers of eleven fragments are five, of no more than two triangles.
+        let drawn = 36 * 2 + 4 * 7;
+        let tiles = 2 * (36 * 2 + 16 * 3) + 4 * 7 + 2 * drawn + 116 * 5 + 8 * 11 + 8 * 5 + 16 * 2;
         assert_eq!(counts.by_tiles(7, 2, Method::Tiles), must(tiles, 14));
         assert_eq!(counts.longest(), 5);
         assert_eq!(counts.gone_through(3), must(3 * (120 + 144 + 80) + 120, 0));

@@ -124,7 +124,8 @@ mod tests {
     fn half_a_step_where_either_may_be_taken() {
         let [red, green, _] = over(&[[0.75, 0.5, 0.0, 1.0]], [1.0, 0.0, 0.0]);
         assert!((red.value - 191.0 / 255.0).abs() < 1e-12, "{red:?}");
-        assert!(red.bound < 1e-6, "{red:?}");
+        // A quotient, two products and two sums of numbers of about 1 each.
+        assert!(red.bound < 16.0 * U, "{red:?}");
         let step = 0.5 / 255.0;
         assert!((green.value - 0.5).abs() < 1e-12, "{green:?}");
         assert!(
