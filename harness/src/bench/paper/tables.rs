@@ -176,23 +176,27 @@ fn samples(bench: &Bench) -> Section {
     let lists = [Method::Insertion, Method::Sort];
     let one = SAMPLES[0].1;
     let mut rows = Vec::new();
-    for leg in legs(bench) {
+    for (leg, (name, methods)) in legs(bench).flat_map(|leg| {
+        [("linked list", &lists[..]), ("tiles", &Method::BY_TILES)].map(|m| (leg, m))
+    }) {
         let with = |count: u32| {
             let own = bench.rows.iter().filter(|row| row.samples == count);
             let scene = own
                 .map(|row| &row.scene)
                 .find(|name| name.starts_with(DRAGON));
-            scene.and_then(|scene| bench.best((scene, leg), &lists, None))
+            scene.and_then(|scene| bench.best((scene, leg), methods, None))
         };
         let Some(single) = with(1) else { continue };
         for (count, fps) in SAMPLES {
             if let Some(row) = with(count) {
+                let paper = one.zip(fps).filter(|_| name != "tiles");
                 rows.push(vec![
                     clean(leg).into_owned(),
+                    name.to_owned(),
                     count.to_string(),
                     ms(row),
                     ratio(Some(row.whole() / single.whole())),
-                    ratio(one.zip(fps).map(|(one, own)| one / own)),
+                    ratio(paper.map(|(one, own)| one / own)),
                     mebibytes(row.memory),
                 ]);
             }
@@ -200,12 +204,17 @@ fn samples(bench: &Bench) -> Section {
     }
     rows.retain(|_| bench.rows.iter().any(|row| row.samples > 1));
     Section {
-        heading: "Samples a pixel: the dragon, 512 x 512, linked lists over those of one sample"
-            .to_owned(),
+        heading: "Samples a pixel: the dragon, 512 x 512, over the same with one sample".to_owned(),
         note: SAMPLES_NOTE,
-        names: 2,
+        names: 3,
         columns: columns(&[
-            "leg", "samples", "time, ms", "over one", "paper's", "memory",
+            "leg",
+            "technique",
+            "samples",
+            "time, ms",
+            "over one",
+            "paper's",
+            "memory",
         ]),
         rows,
     }

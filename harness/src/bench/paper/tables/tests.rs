@@ -44,10 +44,10 @@ fn bench() -> Bench {
     bench
 }
 
-fn cells<'s>(section: &'s Section, names: [&str; 2]) -> Vec<&'s str> {
-    let row = section.rows.iter().find(|row| row[..2] == names);
+fn cells<'s, const N: usize>(section: &'s Section, names: [&str; N]) -> Vec<&'s str> {
+    let row = section.rows.iter().find(|row| row[..N] == names);
     let row = row.unwrap_or_else(|| panic!("no {names:?} in {:?}", section.rows));
-    row[2..].iter().map(String::as_str).collect()
+    row[N..].iter().map(String::as_str).collect()
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn layers_are_over_all_of_them() {
 #[test]
 fn samples_are_over_one() {
     let section = samples(&bench());
-    let of = |count| cells(&section, ["gpu@a/fragment", count])[..3].join(" ");
+    let of = |count| cells(&section, ["gpu@a/fragment", "linked list", count])[..3].join(" ");
     assert_eq!(of("1"), "4.00 1.00 1.00");
     assert_eq!(of("4"), "10.00 2.50 2.22");
 }
