@@ -4,7 +4,6 @@ use std::collections::btree_map::{BTreeMap, Entry};
 
 use triptych_gpu::abuffer;
 use triptych_gpu::raster::{Path, Rasterizer};
-use triptych_spec::abuffer::Order;
 use triptych_spec::raster::Samples;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
@@ -265,9 +264,7 @@ fn leg<'r>(
     let vertices = Vertices::new(&start).map_err(Refusal::from);
     leg.vertices = done.keep(&format!("{what}: vertex stages"), vertices);
     let one = grid.primitives.samples.count() == 1;
-    // Tiles have one order for all samples of a pixel.
-    let by_tiles = one || scene.order == Order::Centroid;
-    if by_tiles && rasterizer.path != Path::Fragment {
+    if plan.skipped("jagged").is_none() && rasterizer.path != Path::Fragment {
         for method in Method::BY_TILES {
             let name = format!("{what}: {}", method.name());
             leg.tiles

@@ -250,7 +250,7 @@ mod tests {
                 .into_iter()
                 .fold(sources, |all, name| all.with(name.into(), String::new()))
         };
-        let shipped = shipped.map(without_networks);
+        let shipped = shipped.clone().map(without_networks);
         let text = |sources: &Sources, root| sources.link(root).map(|linked| linked.text);
         let must = [0, 1].map(|native| {
             let texts = roots.iter().map(|root| text(&shipped[native], root));

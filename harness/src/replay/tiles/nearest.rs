@@ -9,6 +9,7 @@ use super::super::gpu::GpuLeg;
 use super::super::rows::Rows;
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
+use crate::row::Class;
 
 /// The stages, and what a tile does in each.
 const STAGES: [(&str, Way); 3] = [
@@ -46,8 +47,17 @@ impl GpuLeg<'_> {
         for (stage, way) in STAGES {
             let mut pictures = Vec::new();
             let layers = (way, &[must.layers][..]);
-            let made = Banded::new(rasterizer, &options, layers, &fragments, MEMORY)?;
-            made.pictures(|_, picture| pictures.push(picture))?;
+            let made = Banded::new(rasterizer, &options, layers, &fragments, MEMORY)
+                .and_then(|made| made.pictures(|_, picture| pictures.push(picture)));
+            match made {
+                // Bands are of whole tiles, of which a single row may be too much.
+                Err(error @ (GpuError::Limit { .. } | GpuError::Memory { .. })) => {
+                    let (spec, label) = (&self.spec.label, self.label());
+                    rows.skip(stage, spec, &label, Class::Interval, error.to_string());
+                    continue;
+                }
+                made => made?,
+            }
             let seen = Observed::<observe::Gpu, _>::new(self.label(), pictures);
             let spec = self.spec.derive(must);
             let mut judgement = compare(&spec, &seen, |must, pictures| {
