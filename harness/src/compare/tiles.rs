@@ -85,6 +85,28 @@ pub fn digests(spec: &[Digest], other: &[Digest], width: u32) -> Judgement {
     judgement
 }
 
+/// The same stage: tiles that must do without lists in memory. One that was left to them all the same is
+/// `stale-pass`: what is shown of it comes from other passes.
+pub fn left(must: &[bool], left: &[bool]) -> Judgement {
+    let mut judgement = Judgement::new(Class::Exact, "tiles that need no lists");
+    if must.len() != left.len() {
+        judgement.differs(Cause::ReferenceMissing, None, || {
+            format!("{} tiles, must be {}", left.len(), must.len())
+        });
+        return judgement;
+    }
+    let all = must.iter().zip(left).enumerate();
+    for (tile, (_, left)) in all.filter(|(_, (must, _))| **must) {
+        judgement.compared += 1;
+        if *left {
+            judgement.differs(Cause::StalePass, None, || {
+                format!("tile {tile} was left to lists")
+            });
+        }
+    }
+    judgement
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,26 +168,16 @@ mod tests {
             assert_eq!(causes(offsets, &[4, 1, 2]), [(Cause::CorruptLink, 1)]);
         }
     }
-}
 
-/// The same stage: tiles that must do without lists in memory. One that was left to them all the same is
-/// `stale-pass`: what is shown of it comes from other passes.
-pub fn left(must: &[bool], left: &[bool]) -> Judgement {
-    let mut judgement = Judgement::new(Class::Exact, "tiles that need no lists");
-    if must.len() != left.len() {
-        judgement.differs(Cause::ReferenceMissing, None, || {
-            format!("{} tiles, must be {}", left.len(), must.len())
-        });
-        return judgement;
+    #[test]
+    fn what_needs_no_lists_must_have_none() {
+        let judged = left(&[true, false, true], &[false, true, true]);
+        assert_eq!((judged.compared, judged.differ()), (2, 1));
+        assert_eq!(left(&[true; 2], &[false; 2]).differ(), 0);
+        assert_eq!(
+            left(&[true; 2], &[false; 3]).differ(),
+            1,
+            "tiles are missing"
+        );
     }
-    let all = must.iter().zip(left).enumerate();
-    for (tile, (_, left)) in all.filter(|(_, (must, _))| **must) {
-        judgement.compared += 1;
-        if *left {
-            judgement.differs(Cause::StalePass, None, || {
-                format!("tile {tile} was left to lists")
-            });
-        }
-    }
-    judgement
 }
