@@ -44,8 +44,8 @@ fn techniques_samples_and_bands_are_measured() {
         ("/compute", "peel", 1),
         ("/compute", "alpha", 0),
         ("/compute", "weighted", 1),
-        ("/compute", "tiles", 2),
         // Two layers and all with one sample, all with four.
+        ("/compute", "tiles", 3),
         ("/compute", "sort", 3),
     ] {
         assert_eq!(of(leg, method).len(), count, "{leg} {method}: {csv}");
