@@ -40,6 +40,9 @@ const IN_ORDER: u32 = 0x80000000u;
 // Entries of the longest list of a tile with rows.
 const ROWS: u32 = 64u;
 
+// Entries that an invocation blends in one go: llvmpipe leaves loops after 65,535 rounds.
+const AT_ONCE: u32 = 16384u;
+
 // In `start`: its tile is done, and has no lists.
 const NO_LIST: u32 = 0xffffffffu;
 
@@ -166,13 +169,15 @@ fn fill_lists(tile: u32, lane: u32) {
 }
 
 // Which kernel of stage shade takes a list: those of up to 8, 16, 32, 64 entries, of lists that lie
-// one after another, and of lists in order.
+// one after another, and of lists that are blended as they are.
 fn kernel_of(run: Run, length: u32, in_order: bool) -> u32 {
+    if in_order && length <= AT_ONCE {
+        return 5u;
+    }
     if run.row == CONTIGUOUS {
         return 4u;
     }
-    let by_length = u32(length > 8u) + u32(length > 16u) + u32(length > 32u);
-    return select(by_length, 5u, in_order);
+    return u32(length > 8u) + u32(length > 16u) + u32(length > 32u);
 }
 
 // Of each length up to ROWS, the lists of a tile that have it, a bit each.

@@ -135,7 +135,7 @@ fn jagged_fill(
     }
 }
 
-// Stage shade: lists that are too long for registers, in order; 64 of them.
+// Stage shade: lists that are too long for registers, put in order; 64 of them.
 @compute @workgroup_size(WORKGROUP)
 fn shade_sort(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -147,7 +147,8 @@ fn shade_sort(
         return;
     }
     let run = run_at(tile, lane);
-    sort_lists(run.start, select(0u, run.length, run.row == CONTIGUOUS), lane);
+    let is_left = run.row == CONTIGUOUS && !run.in_order;
+    sort_lists(run.start, select(0u, run.length, is_left), lane);
 }
 
 // The longest lists: runs in order; one entry. Of a list, `groups` workgroups take all entries.
@@ -176,7 +177,7 @@ fn shade_merge(
     }
 }
 
-// Lists in rows that were filled in order.
+// Lists that were filled in order.
 @compute @workgroup_size(WORKGROUP)
 fn shade_ordered(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -184,7 +185,7 @@ fn shade_ordered(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel != NOWHERE && own.run.row != CONTIGUOUS && own.run.in_order {
+    if own.pixel != NOWHERE && own.run.in_order && own.run.length <= AT_ONCE {
         show(own.pixel, shaded(own));
     }
 }
@@ -192,7 +193,7 @@ fn shade_ordered(
 // Kernels shade_8, shade_16, shade_32 and shade_64 sort lists of at most so many entries in registers, and
 // blend them: `network` has them, which a program writes (wgsl/network.rs).
 
-// Longer lists, sorted before. A dispatch goes on where the one before stopped: the picture holds the
+// Other lists, sorted before. A dispatch goes on where the one before stopped: the picture holds the
 // sum so far and the transmittance.
 @compute @workgroup_size(WORKGROUP)
 fn shade_long(
@@ -201,7 +202,7 @@ fn shade_long(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel == NOWHERE || own.run.row != CONTIGUOUS {
+    if own.pixel == NOWHERE || kernel_of(own.run, own.run.length, own.run.in_order) != 4u {
         return;
     }
     let length = min(own.run.length, tiled.layers);

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use triptych_spec::abuffer::Lists;
 use triptych_spec::layouts::PRIMS_MAX;
-use triptych_spec::tiles::ROWS;
 
 use super::pool::Pool;
 use super::room::Room;
@@ -166,11 +165,11 @@ pub(super) fn jagged(
     }
     let entries = || gpu.storage("entries of lists", 8 * u64::from(needed));
     room.buffers.set("listed", entries()?);
-    if room.longest(needed)?.length > ROWS {
-        room.buffers.set("merged", entries()?);
-    }
     times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
     let longest = room.longest(needed)?;
+    if longest.has_unsorted() {
+        room.buffers.set("merged", entries()?);
+    }
     let lists: Vec<rows::List> = gpu.read(room.buffers.get("lists"), room.lists as usize)?;
     let moved: Vec<u32> = gpu.read(room.buffers.get("rows"), room.lists as usize)?;
     let linked = |room: &Room<'_, '_>| -> Result<Lists, GpuError> {

@@ -1,7 +1,5 @@
 //! Passes over the lists of a band.
 
-use triptych_spec::tiles::ROWS;
-
 use super::Tiled;
 use super::room::{Longest, Room};
 use crate::dispatch::{GROUPS_MAX, Ready};
@@ -12,8 +10,8 @@ use crate::lists::long_passes;
 /// Steps along lists that a dispatch takes.
 pub(super) const STEPS: u32 = 16_384;
 
-/// Kernels that blend lists in rows, by the bits of [`Longest::kernels`]: lists to be sorted, by the
-/// sizes of [`crate::wgsl::network::SIZES`], and lists in order.
+/// Kernels that blend lists that nobody has to sort before, by the bits of [`Longest::kernels`]: lists
+/// in rows, by the sizes of [`crate::wgsl::network::SIZES`], and lists in order.
 const ENTRIES: [(u32, &str); 5] = [
     (0, "shade_8"),
     (1, "shade_16"),
@@ -21,6 +19,16 @@ const ENTRIES: [(u32, &str); 5] = [
     (3, "shade_64"),
     (5, "shade_ordered"),
 ];
+
+/// The bit of lists that are sorted in memory.
+const SORTED: u32 = 1 << 4;
+
+impl Longest {
+    /// Whether any list is sorted in memory.
+    pub(super) fn has_unsorted(&self) -> bool {
+        self.kernels & SORTED != 0
+    }
+}
 
 impl Room<'_, '_> {
     /// Counts the fragments of each list, and says where they will be.
@@ -43,7 +51,7 @@ impl Room<'_, '_> {
     pub(super) fn sort_lists(&mut self, longest: Longest) -> Result<Vec<Ready>, GpuError> {
         let Longest { length, count, .. } = longest;
         let mut passes = Vec::new();
-        if length <= ROWS {
+        if !longest.has_unsorted() {
             return Ok(passes);
         }
         passes.push(self.pass("shade_sort", self.of_tiles(), self.tiles)?);
@@ -92,10 +100,9 @@ impl Room<'_, '_> {
                 passes.push(self.pass(entry, short, self.tiles)?);
             }
         }
-        let long = if longest.length > ROWS {
-            longest.length
-        } else {
-            0
+        let long = match longest.has_unsorted() {
+            true => longest.length,
+            false => 0,
         };
         for first in (0..long).step_by(STEPS as usize) {
             let tiled = Tiled {

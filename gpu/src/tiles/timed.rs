@@ -1,7 +1,5 @@
 //! A band drawn over and over, each part timed.
 
-use triptych_spec::tiles::ROWS;
-
 use super::attempt::BINNED_MAX;
 use super::pool::Pool;
 use super::room::Room;
@@ -171,16 +169,14 @@ impl<'r, 'g> Timed<'r, 'g> {
         let bytes = 8 * u64::from(fragments);
         let listed = room.pool.storage(gpu, "entries of lists", bytes)?;
         room.buffers.set("listed", listed);
-        if room.longest(fragments)?.length > ROWS {
-            let merged = room.pool.storage(gpu, "entries that are merged", bytes)?;
-            room.buffers.set("merged", merged);
-        }
         let fill = room.drawn("jagged_fill", fragments, drawn)?;
         attempt::submit(room, &fill)?;
         let longest = room.longest(fragments)?;
         let spans = &mut self.spans;
         spans.extend([(Span::Place, place), (Span::Fill, fill)]);
-        if longest.length > ROWS {
+        if longest.has_unsorted() {
+            let merged = room.pool.storage(gpu, "entries that are merged", bytes)?;
+            room.buffers.set("merged", merged);
             spans.push((Span::Sort, room.sort_lists(longest)?));
         }
         for n in layers {

@@ -51,9 +51,9 @@ pub(super) const SHADE: Stage = Stage {
         "shade_long",
     ],
     fragment: &[],
-    contract: "Puts lists of more than 64 entries in order, in several passes; those of at most \
-        8, 16, 32 and 64 that are not marked in registers, from where they are written back if \
-        tiled.stored says so. Blends all into `picture`, in front of the opaque key only.",
+    contract: "Blends marked lists of up to 16,384 entries as they are. Puts others in order: of more \
+        than 64 entries in several passes, of at most 8, 16, 32 and 64 in registers, from where they \
+        are written back if tiled.stored says so. Blends all into `picture`, in front of the opaque key only.",
 };
 
 /// The picture without lists in memory.
