@@ -64,8 +64,11 @@ fn draw(tile: u32, lane: u32, fill: bool) -> Pixel {
         workgroupBarrier();
         let all = draw_small(first, bin, tile, lane, fill);
         take_small(&own);
-        draw_some(&own, select(all.x, all.y, FROM_BACK), select(0u, 32u, FROM_BACK), fill);
-        draw_some(&own, select(all.y, all.x, FROM_BACK), select(32u, 0u, FROM_BACK), fill);
+        // In a loop, so that drivers that put every call's text in its place have it once.
+        for (var half = 0u; half < 2u; half += 1u) {
+            let later = (half == 1u) != FROM_BACK;
+            draw_some(&own, select(all.x, all.y, later), select(0u, 32u, later), fill);
+        }
         leave_pixel(own);
     }
     if !fill && own.end != 0u {

@@ -102,48 +102,48 @@ fn pair(a: Listed, b: Listed) -> Pair {
     return Pair(select(b, a, rises), select(a, b, rises));
 }
 
-// One that lies behind all that wait, as most do.
-fn put_last(own: ptr<function, Pixel>, entry: Listed) {
-    let p = (*own).held;
-    (*own).held.a = p.b;
-    (*own).held.b = p.c;
-    (*own).held.c = p.d;
-    (*own).held.d = p.e;
-    (*own).held.e = p.f;
-    (*own).held.f = p.g;
-    (*own).held.g = p.h;
-    (*own).held.h = entry;
-    if (*own).count >= WINDOW {
-        blend(own, p.a);
-    }
-    (*own).count += 1u;
+// Takes the nearest of those that wait.
+fn take_nearest(own: ptr<function, Pixel>) -> Listed {
+    let nearest = (*own).held.a;
+    (*own).held.a = (*own).held.b;
+    (*own).held.b = (*own).held.c;
+    (*own).held.c = (*own).held.d;
+    (*own).held.d = (*own).held.e;
+    (*own).held.e = (*own).held.f;
+    (*own).held.f = (*own).held.g;
+    (*own).held.g = (*own).held.h;
+    return nearest;
 }
 
 fn put(own: ptr<function, Pixel>, entry: Listed, fill: bool) {
     let p = (*own).held;
+    var nearest: Listed;
     if less(p.h, entry) {
-        put_last(own, entry);
-        return;
+        // It lies behind all that wait, as most do.
+        nearest = take_nearest(own);
+        (*own).held.h = entry;
+    } else {
+        // It goes to its place from the far end; the nearest of nine comes out.
+        let h = pair(p.h, entry);
+        let g = pair(p.g, h.nearer);
+        let f = pair(p.f, g.nearer);
+        let e = pair(p.e, f.nearer);
+        let d = pair(p.d, e.nearer);
+        let c = pair(p.c, d.nearer);
+        let b = pair(p.b, c.nearer);
+        let a = pair(p.a, b.nearer);
+        (*own).held.a = a.farther;
+        (*own).held.b = b.farther;
+        (*own).held.c = c.farther;
+        (*own).held.d = d.farther;
+        (*own).held.e = e.farther;
+        (*own).held.f = f.farther;
+        (*own).held.g = g.farther;
+        (*own).held.h = h.farther;
+        nearest = a.nearer;
     }
-    // It goes to its place from the far end; the nearest of nine comes out.
-    let h = pair(p.h, entry);
-    let g = pair(p.g, h.nearer);
-    let f = pair(p.f, g.nearer);
-    let e = pair(p.e, f.nearer);
-    let d = pair(p.d, e.nearer);
-    let c = pair(p.c, d.nearer);
-    let b = pair(p.b, c.nearer);
-    let a = pair(p.a, b.nearer);
-    (*own).held.a = a.farther;
-    (*own).held.b = b.farther;
-    (*own).held.c = c.farther;
-    (*own).held.d = d.farther;
-    (*own).held.e = e.farther;
-    (*own).held.f = f.farther;
-    (*own).held.g = g.farther;
-    (*own).held.h = h.farther;
     if (*own).count >= WINDOW {
-        blend(own, a.nearer);
+        blend(own, nearest);
     }
     (*own).count += 1u;
 }
@@ -163,24 +163,20 @@ fn digested(words: u32, entry: Listed) -> u32 {
     return (((words ^ entry.x) * 16777619u) ^ entry.y) * 16777619u;
 }
 
-// The window's number i of the last `count` fragments, if it waits.
-fn finish(own: ptr<function, Pixel>, i: u32, entry: Listed) {
-    if i + min((*own).count, WINDOW) >= WINDOW {
-        blend(own, entry);
+// What waits after the last fragment, nearest first; the first of a list of fewer are nothing.
+fn finish(own: ptr<function, Pixel>) {
+    let waiting = min((*own).count, WINDOW);
+    for (var i = 0u; i < WINDOW; i += 1u) {
+        let nearest = take_nearest(own);
+        if i + waiting >= WINDOW {
+            blend(own, nearest);
+        }
     }
 }
 
 fn draw_local(tile: u32, lane: u32) {
     var own = draw(tile, lane, true);
-    let p = own.held;
-    finish(&own, 0u, p.a);
-    finish(&own, 1u, p.b);
-    finish(&own, 2u, p.c);
-    finish(&own, 3u, p.d);
-    finish(&own, 4u, p.e);
-    finish(&own, 5u, p.f);
-    finish(&own, 6u, p.g);
-    finish(&own, 7u, p.h);
+    finish(&own);
     let bin = bin_of(tile);
     let is_cut = bin.y - bin.x > tiled.count;
     if own.held.is_out_of_order || is_cut {
