@@ -69,9 +69,10 @@ fn by_turns(all: Vec<Mutant>) -> Vec<Mutant> {
     all.into_iter().map(|(_, mutant)| mutant).collect()
 }
 
-/// Mutants on maps, which are few and large, take as long as all others.
+/// Mutants on frames take about as long as those on grids, indirect light and maps together.
 fn lab_of(mutant: &Mutant) -> usize {
-    usize::from(mutant.scene.starts_with("ldm/"))
+    let frames = ["abuffer/", "raster/", "vertex/"];
+    usize::from(!frames.iter().any(|family| mutant.scene.starts_with(family)))
 }
 
 /// Two labs: a driver compiles on one core, and runs most kernels there. Their scenes have few

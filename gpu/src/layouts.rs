@@ -73,7 +73,7 @@ impl Layout {
     }
 
     /// The file that ships its kernels.
-    fn file(self) -> &'static str {
+    pub fn file(self) -> &'static str {
         match self {
             Self::Bucket | Self::Precalc => "layouts",
             other => other.name(),

@@ -14,7 +14,7 @@ use super::{Cell, Mutant};
 use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
 use crate::plan::{LdmPlan, Plan, RsmPlan};
-use crate::registry::{Chain, RIVALS};
+use crate::registry::Chain;
 use crate::replay::gpu::{Adapter, Drawn, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
@@ -128,7 +128,7 @@ impl Ground {
     ) -> Tried {
         let new = !self.sound.contains(&(adapter.gpu.name.clone(), setting));
         if new {
-            let rows = self.rows(adapter, setting, &RIVALS);
+            let rows = self.rows(adapter, setting, setting.part.files());
             let rows = rows.map_err(|e| e.to_string())?;
             let is = |verdict| rows.iter().any(|r| r.verdict() == verdict);
             if is(Verdict::Diverge) || !is(Verdict::Agree) {
@@ -153,20 +153,20 @@ impl Ground {
         fault: Option<Fault>,
     ) -> Result<Vec<Row>, GpuError> {
         let native = setting.path == Path::Native;
-        let rivals: Vec<&'static str> = differ(&sources, native, &RIVALS)?.collect();
+        let files: Vec<&'static str> = differ(&sources, native, setting.part.files())?.collect();
         let mutated = kernels(adapter, setting.path).mutated(sources, fault)?;
         let shipped = std::mem::replace(kernels(adapter, setting.path), mutated);
-        let rows = self.rows(adapter, setting, &rivals);
+        let rows = self.rows(adapter, setting, &files);
         *kernels(adapter, setting.path) = shipped;
         rows
     }
 
-    /// The rows of a leg, and of these rivals if any are what is compared.
+    /// The rows of a leg: of these programs alone, if one runs without another.
     fn rows(
         &self,
         adapter: &Adapter,
         setting: Setting,
-        rivals: &[&'static str],
+        files: &[&'static str],
     ) -> Result<Vec<Row>, GpuError> {
         let path = setting.path;
         let Loaded {
@@ -202,7 +202,7 @@ impl Ground {
             }
             return Ok(rows.rows);
         }
-        self.frame(adapter, setting, rivals, &mut rows)?;
+        self.frame(adapter, setting, files, &mut rows)?;
         Ok(rows.rows)
     }
 
@@ -211,7 +211,7 @@ impl Ground {
         &self,
         adapter: &Adapter,
         setting: Setting,
-        rivals: &[&'static str],
+        files: &[&'static str],
         rows: &mut Rows,
     ) -> Result<(), GpuError> {
         let Setting { path, part, .. } = setting;
@@ -241,9 +241,9 @@ impl Ground {
             from: From::default(),
         };
         match part {
-            Part::Rivals => run_only(rivals, &leg, Extent::All, rows),
-            Part::Tiles => tiles::run(&leg, Extent::All, rows),
-            Part::Layouts => layouts::run(&leg, Extent::All, rows),
+            Part::Rivals => run_only(files, &leg, Extent::All, rows),
+            Part::Tiles => tiles::run_only(files, &leg, Extent::All, rows),
+            Part::Layouts => layouts::run_only(files, &leg, Extent::All, rows),
             _ => leg.run(rows).map(drop),
         }
     }

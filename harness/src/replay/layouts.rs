@@ -1,45 +1,53 @@
 //! The same lists in other layouts, each against the spec's lists and picture.
 
-use std::collections::BTreeMap;
+mod limits;
 
-use triptych_gpu::abuffer::{BandResult, STEPS};
+use triptych_gpu::abuffer::BandResult;
 use triptych_gpu::error::GpuError;
 use triptych_gpu::frame::Band;
 use triptych_gpu::layouts::{Built, Layout, Options, is_wide, run as draw};
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_spec::abuffer::{Lists, Sorted};
 
-use wgpu::DeviceType;
-
 use super::Extent;
-use super::gpu::{From, GpuLeg};
+use super::gpu::GpuLeg;
 use super::rivals::Listed;
 use super::rows::Rows;
-use super::spec::SpecRun;
 use super::tiles::part;
 use crate::cause::Cause;
 use crate::compare::lists::{certify, compare_overflowed};
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{Gpu, Observed};
 use crate::row::Class;
-
-/// Most triangles and fragments that a default run has on a software driver.
-const WORK_MAX: u64 = 1 << 15;
-
-/// Most slots of the arrays of all pixels.
-const SLOTS_MAX: u64 = 1 << 18;
-
-/// The same where each fragment goes along its list: steps of all.
-const STEPS_MAX: u64 = 1 << 18;
+use limits::reason_not_run;
+pub use limits::{slots, steps, too_many_steps};
 
 /// Adds rows for every layout, which starts from the spec's triangles and opaque surfaces.
 ///
 /// # Errors
 /// Whatever the device reports.
 pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuError> {
+    let files = Layout::ALL.map(Layout::file);
+    run_only(&files, leg, extent, rows)
+}
+
+/// Adds rows for the layouts of these programs, or of their variants for several samples.
+///
+/// # Errors
+/// Whatever the device reports.
+pub fn run_only(
+    files: &[&str],
+    leg: &GpuLeg<'_>,
+    extent: Extent,
+    rows: &mut Rows,
+) -> Result<(), GpuError> {
+    let has = |layout: &Layout| {
+        let file = layout.file();
+        files.iter().any(|f| f.trim_end_matches("_samples") == file)
+    };
     let mut rasterizer = None;
     let mut arrays = Vec::new();
-    for layout in Layout::ALL {
+    for layout in Layout::ALL.into_iter().filter(has) {
         if let Some(reason) = reason_not_run(leg, extent, layout) {
             let label = leg.label();
             rows.skip(
@@ -64,6 +72,9 @@ pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuE
             }
         }
     }
+    if !has(&Layout::Bucket) {
+        return Ok(());
+    }
     match arrays.is_empty() {
         true => {
             let reason = reason_not_run(leg, extent, Layout::Bucket);
@@ -73,79 +84,6 @@ pub fn run(leg: &GpuLeg<'_>, extent: Extent, rows: &mut Rows) -> Result<(), GpuE
         false => leg.judge_rank(arrays, rows),
     }
     Ok(())
-}
-
-/// Why a layout does not run on a leg; `None` if it does.
-fn reason_not_run(leg: &GpuLeg<'_>, extent: Extent, layout: Layout) -> Option<String> {
-    if let Some(planned) = leg.plan.skipped(layout.name()) {
-        return Some(planned);
-    }
-    if leg.from > From::Build {
-        return Some(From::GIVEN.to_owned());
-    }
-    if leg.by_band() {
-        return Some("the driver's sub-pixel grid is unknown".to_owned());
-    }
-    let spec = &leg.spec.value;
-    if layout == Layout::Ordered
-        && let Some(words) = too_many_steps(spec, leg.path)
-    {
-        return Some(format!("plan: {words}"));
-    }
-    let is_slow = leg.adapter.gpu.info.device_type == DeviceType::Cpu;
-    let work = (spec.primitives.prims.len() + spec.sorted.fragments.len()) as u64;
-    let is_large = work > WORK_MAX
-        || match layout {
-            Layout::Bucket => slots(&spec.sorted) > SLOTS_MAX,
-            Layout::Ordered => steps(&spec.sorted) > STEPS_MAX,
-            _ => false,
-        };
-    (extent == Extent::Small && is_slow && is_large)
-        .then(|| "of a scene of its size only if asked for: --rivals".to_owned())
-}
-
-/// Slots of arrays that are as long as the longest list.
-pub fn slots(sorted: &Sorted) -> u64 {
-    let lengths = || {
-        sorted
-            .offsets
-            .windows(2)
-            .map(|run| u64::from(run[1] - run[0]))
-    };
-    lengths().max().unwrap_or(0) * lengths().count() as u64
-}
-
-/// Steps of all fragments along their lists.
-pub fn steps(sorted: &Sorted) -> u64 {
-    let lengths = sorted.offsets.windows(2);
-    lengths.map(|run| u64::from(run[1] - run[0]).pow(2)).sum()
-}
-
-/// Why lists cannot be put in order while they are built on a path; `None` if they can.
-pub fn too_many_steps(spec: &SpecRun, path: Path) -> Option<String> {
-    let most = steps_of_an_invocation(spec, path);
-    let words =
-        || format!("an invocation may take {most} steps along lists, more than its {STEPS}");
-    (most > STEPS).then(words)
-}
-
-/// The most steps of an invocation along lists that are in order: one for each node, and one where
-/// another invocation was first to hang a node there. It has a fragment, and on the compute paths all of a
-/// row of a triangle.
-fn steps_of_an_invocation(spec: &SpecRun, path: Path) -> u64 {
-    let pixels = 0..spec.sorted.offsets.len() - 1;
-    let steps = |pixel: usize| 2 * spec.sorted.list(pixel).len() as u64;
-    if path == Path::Fragment {
-        return pixels.map(steps).max().unwrap_or(0);
-    }
-    let width = spec.primitives.size.width;
-    let mut most = BTreeMap::<(u32, u32), u64>::new();
-    for pixel in pixels {
-        for f in spec.sorted.list(pixel) {
-            *most.entry((f.prim, f.pixel / width)).or_default() += steps(pixel);
-        }
-    }
-    most.into_values().max().unwrap_or(0)
 }
 
 impl GpuLeg<'_> {

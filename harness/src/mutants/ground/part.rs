@@ -5,7 +5,7 @@ use triptych_gpu::wgsl::{Sources, WgslError};
 use crate::registry::RIVALS;
 
 /// Files of the lists in other layouts.
-pub(super) const LAYOUTS: [&str; 8] = [
+const LAYOUTS: [&str; 8] = [
     "layouts",
     "packed",
     "regions",
@@ -39,6 +39,18 @@ pub(super) enum Part {
     Tiles,
     /// The lists in other layouts.
     Layouts,
+}
+
+impl Part {
+    /// The programs of it that run one without another.
+    pub(super) fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Vertex | Self::Lists => &[],
+            Self::Rivals => &RIVALS,
+            Self::Tiles => &TILES,
+            Self::Layouts => &LAYOUTS,
+        }
+    }
 }
 
 /// Which stages' kernels are not those that ship: the first of them have the defect.

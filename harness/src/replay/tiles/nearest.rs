@@ -3,31 +3,20 @@
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{MEMORY, Rasterizer};
 use triptych_gpu::tiles::{Banded, Options, Way};
-use triptych_spec::abuffer::Sorted;
 
 use super::super::gpu::GpuLeg;
 use super::super::rows::Rows;
+use super::{LINKED, LISTS, LOCAL};
 use crate::compare::{self, Judgement, compare};
 use crate::observe::{self, Observed};
 use crate::row::Class;
 
-/// The stages, and what a tile does in each.
-const STAGES: [(&str, Way); 3] = [
-    ("shade", Way::Runs),
-    ("local", Way::Local),
-    ("linked", Way::Linked),
+/// The stages, their programs, and what a tile does in each.
+const STAGES: [(&str, &str, Way); 3] = [
+    ("shade", LISTS, Way::Runs),
+    ("local", LOCAL, Way::Local),
+    ("linked", LINKED, Way::Linked),
 ];
-
-/// Fragments in each row of pixels.
-fn rows_of(sorted: &Sorted, width: u32) -> Vec<u32> {
-    let ends: Vec<u32> = sorted
-        .offsets
-        .iter()
-        .step_by(width as usize)
-        .copied()
-        .collect();
-    ends.windows(2).map(|row| row[1] - row[0]).collect()
-}
 
 impl GpuLeg<'_> {
     /// Adds a row for each stage that has a picture: that of some nearest layers alone.
@@ -38,13 +27,14 @@ impl GpuLeg<'_> {
         &self,
         rasterizer: &Rasterizer<'_>,
         options: Options<'_>,
+        has: impl Fn(&str) -> bool,
         rows: &mut Rows,
     ) -> Result<(), GpuError> {
         let own = &self.spec.value;
         let must = own.rivals.listed(self.scene, own);
         let width = self.scene.size.width;
-        let fragments = rows_of(&own.sorted, width);
-        for (stage, way) in STAGES {
+        let fragments = own.sorted.rows(width);
+        for (stage, _, way) in STAGES.into_iter().filter(|(_, file, _)| has(file)) {
             let mut pictures = Vec::new();
             let layers = (way, &[must.layers][..]);
             let made = Banded::new(rasterizer, &options, layers, &fragments, MEMORY)
