@@ -48,8 +48,5 @@ fn density(@builtin(global_invocation_id) id: vec3<u32>) {
 
 @compute @workgroup_size(WORKGROUP)
 fn density_clear(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x < band_pixels() {
-        picture[id.x] = vec4(0.0, 0.0, 0.0, 1.0);
-        cursors[id.x] = heads[id.x];
-    }
+    begin_list(id.x);
 }

@@ -10,20 +10,12 @@ fn rank_blend_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    if (listing.flags & BEGINS) != 0u {
-        begin_turn();
-    } else {
-        resume_turn(id.x);
-    }
+    enter_turn(id.x, (listing.flags & BEGINS) != 0u);
     let own = entries_of(id.x);
     let shown = shown_entries(id.x, own.y, SAMPLED);
     for (var i = shown.x; i < shown.y; i += 1u) {
         let entry = listed[own.x + i];
         under_turn(id.x, entry.x, entry.y, faces[entry.y >> MASK_BITS]);
     }
-    if (listing.flags & ENDS) != 0u {
-        end_turn(id.x);
-    } else {
-        leave_turn(id.x);
-    }
+    leave_turn(id.x, (listing.flags & ENDS) != 0u);
 }

@@ -10,11 +10,7 @@ fn ordered_blend_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    if (listing.flags & BEGINS) != 0u {
-        begin_turn();
-    } else {
-        resume_turn(id.x);
-    }
+    enter_turn(id.x, (listing.flags & BEGINS) != 0u);
     var node = atomicLoad(&links[id.x]);
     for (var i = 0u; i < min(listing.first + SAMPLED, listing.layers) && node != EOL; i += 1u) {
         if i >= listing.first {
@@ -23,9 +19,5 @@ fn ordered_blend_samples(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         node = atomicLoad(&links[listing.links + node]);
     }
-    if (listing.flags & ENDS) != 0u {
-        end_turn(id.x);
-    } else {
-        leave_turn(id.x);
-    }
+    leave_turn(id.x, (listing.flags & ENDS) != 0u);
 }

@@ -5,7 +5,7 @@
 // Nor do those of a later frame, as stage resolve's part takes each head that it reads, and the counter.
 //#import listing
 //#import counter
-//#import relink
+//#import followed
 
 struct PackedNode {
     colour: u32,
@@ -14,14 +14,8 @@ struct PackedNode {
     link: u32,
 }
 
-struct Work {
-    unfinished: atomic<u32>,
-    pixels: array<Progress>,
-}
-
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> packed_nodes: array<PackedNode>;
-@group(0) @binding(11) var<storage, read_write> progress: Work;
 
 // To the nearest of 256 steps. Whatever lies outside of 0 to 1 is cut.
 fn byte_of(channel: f32) -> u32 {
@@ -80,6 +74,14 @@ fn set_next(at: u32, next: u32) {
     packed_nodes[at].link = next + 1u;
 }
 
+fn key_of_node(at: u32) -> u32 {
+    return packed_nodes[at].key;
+}
+
+fn colour_of_node(at: u32) -> vec4<f32> {
+    return unpack(packed_nodes[at].colour);
+}
+
 fn before(a: u32, b: u32) -> bool {
     let x = packed_nodes[a];
     let y = packed_nodes[b];
@@ -110,30 +112,10 @@ fn packed_resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x == 0u {
         atomicStore(&counter, 0u);
     }
-    var p = progress.pixels[id.x];
-    var seen = picture[id.x];
-    if p.run == 0u {
-        let head = atomicExchange(&heads[id.x], 0u);
-        p = Progress(EOL, EOL, head - 1u, EOL, 0u, 0u, 1u, FIND);
-        seen = vec4(0.0, 0.0, 0.0, 1.0);
+    // Heads of pixels that are under way have been taken.
+    var head = EOL;
+    if progress.pixels[id.x].run == 0u {
+        head = atomicExchange(&heads[id.x], 0u) - 1u;
     }
-    if p.state == DONE {
-        return;
-    }
-    let end = opaque_key[id.x];
-    var i = 0u;
-    while i < STEPS && p.left_size < listing.layers && p.left != EOL && packed_nodes[p.left].key < end {
-        seen = under(seen, unpack(packed_nodes[p.left].colour));
-        p.left = next_of(p.left);
-        p.left_size += 1u;
-        i += 1u;
-    }
-    if i == STEPS {
-        atomicStore(&progress.unfinished, 1u);
-    } else {
-        seen = vec4(seen.rgb + seen.a * behind(id.x), 1.0);
-        p.state = DONE;
-    }
-    picture[id.x] = seen;
-    progress.pixels[id.x] = p;
+    blend_list(id.x, head);
 }

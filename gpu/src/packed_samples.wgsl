@@ -3,6 +3,15 @@
 //#import drawn_samples for drawn
 //#import packed
 //#import sampled
+//#import followed_samples
+
+fn face_of_node(at: u32) -> u32 {
+    return packed_nodes[at].face;
+}
+
+fn layer_of_node(at: u32) -> vec4<f32> {
+    return colour_of_node(at);
+}
 
 // As packed_resolve; heads are taken in the last turn, and the counter after it.
 @compute @workgroup_size(WORKGROUP)
@@ -10,35 +19,14 @@ fn packed_resolve_samples(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= band_pixels() {
         return;
     }
-    let is_last = turn_end() == frame.samples;
-    var p = progress.pixels[id.x];
-    if p.state == DONE {
-        return;
-    }
-    if p.run == 0u {
-        let head = atomicLoad(&heads[id.x]);
-        if is_last {
+    var head = EOL;
+    if progress.pixels[id.x].run == 0u {
+        head = atomicLoad(&heads[id.x]) - 1u;
+        if turn_end() == frame.samples {
             atomicStore(&heads[id.x], 0u);
         }
-        p = Progress(EOL, EOL, head - 1u, EOL, 0u, 0u, 1u, FIND);
-        begin_turn();
-    } else {
-        resume_turn(id.x);
     }
-    for (var i = 0u; i < SAMPLED && p.left_size < listing.layers && p.left != EOL; i += 1u) {
-        let node = packed_nodes[p.left];
-        under_turn(id.x, node.key, node.face, unpack(node.colour));
-        p.left = node.link - 1u;
-        p.left_size += 1u;
-    }
-    if p.left_size < listing.layers && p.left != EOL {
-        atomicStore(&progress.unfinished, 1u);
-        leave_turn(id.x);
-    } else {
-        end_turn(id.x);
-        p.state = DONE;
-    }
-    progress.pixels[id.x] = p;
+    blend_list_samples(id.x, head);
 }
 
 @compute @workgroup_size(WORKGROUP)

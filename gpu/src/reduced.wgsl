@@ -23,10 +23,7 @@ const BEYOND: u32 = 0x80000000u;
 
 @compute @workgroup_size(WORKGROUP)
 fn reduced_clear(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x < band_pixels() {
-        picture[id.x] = vec4(0.0, 0.0, 0.0, 1.0);
-        cursors[id.x] = heads[id.x];
-    }
+    begin_list(id.x);
 }
 
 // The layers of a reduced pixel without what lies behind. A dispatch goes on where the one before stopped.

@@ -3,7 +3,7 @@
 //
 // Of a region, as many nodes are stored as it has room for; its counter counts all.
 //#import listing
-//#import relink
+//#import followed
 
 struct Node {
     key: u32,
@@ -17,19 +17,20 @@ struct Node {
 @group(0) @binding(8) var<storage, read_write> nodes: array<Node>;
 @group(0) @binding(9) var<storage, read_write> colours: array<vec4<f32>>;
 
-struct Work {
-    unfinished: atomic<u32>,
-    pixels: array<Progress>,
-}
-
-@group(0) @binding(11) var<storage, read_write> progress: Work;
-
 fn next_of(at: u32) -> u32 {
     return nodes[at].next;
 }
 
 fn set_next(at: u32, next: u32) {
     nodes[at].next = next;
+}
+
+fn key_of_node(at: u32) -> u32 {
+    return nodes[at].key;
+}
+
+fn colour_of_node(at: u32) -> vec4<f32> {
+    return colours[at];
 }
 
 // Total order, as stage sort has it.
@@ -87,41 +88,10 @@ fn regions_fragment(drawn: Drawn) {
     insert(fragment, (row * across + column) % listing.regions);
 }
 
-// Where a pixel stands in its list, whose nodes are in order by now. `left_size` layers have been shown.
-fn under_way(pixel: u32) -> Progress {
-    let p = progress.pixels[pixel];
-    if p.run == 0u {
-        return Progress(EOL, EOL, atomicLoad(&heads[pixel]), EOL, 0u, 0u, 1u, FIND);
-    }
-    return p;
-}
-
-// Then: as stage resolve, of listing.layers layers at most.
+// Then: the picture of lists that are in order by now.
 @compute @workgroup_size(WORKGROUP)
 fn regions_blend(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= band_pixels() {
-        return;
+    if id.x < band_pixels() {
+        blend_list(id.x, atomicLoad(&heads[id.x]));
     }
-    let begins = progress.pixels[id.x].run == 0u;
-    var p = under_way(id.x);
-    if p.state == DONE {
-        return;
-    }
-    var seen = select(picture[id.x], vec4(0.0, 0.0, 0.0, 1.0), vec4(begins));
-    let end = opaque_key[id.x];
-    var i = 0u;
-    while i < STEPS && p.left_size < listing.layers && p.left != EOL && nodes[p.left].key < end {
-        seen = under(seen, colours[p.left]);
-        p.left = nodes[p.left].next;
-        p.left_size += 1u;
-        i += 1u;
-    }
-    if i == STEPS {
-        atomicStore(&progress.unfinished, 1u);
-    } else {
-        seen = vec4(seen.rgb + seen.a * behind(id.x), 1.0);
-        p.state = DONE;
-    }
-    picture[id.x] = seen;
-    progress.pixels[id.x] = p;
 }

@@ -13,15 +13,14 @@ fn turn_end() -> u32 {
     return listing.sample + listing.samples;
 }
 
-fn begin_turn() {
+// Nothing has been seen of a pixel, or what an earlier dispatch left.
+fn enter_turn(pixel: u32, begins: bool) {
     for (var s = listing.sample; s < turn_end(); s += 1u) {
-        seen_at[s] = vec4(0.0, 0.0, 0.0, 1.0);
-    }
-}
-
-fn resume_turn(pixel: u32) {
-    for (var s = listing.sample; s < turn_end(); s += 1u) {
-        seen_at[s] = picture[frame.samples * pixel + s];
+        if begins {
+            seen_at[s] = vec4(0.0, 0.0, 0.0, 1.0);
+        } else {
+            seen_at[s] = picture[frame.samples * pixel + s];
+        }
     }
 }
 
@@ -43,16 +42,16 @@ fn under_turn(pixel: u32, key: u32, face: u32, layer: vec4<f32>) {
     }
 }
 
-// More is to come.
-fn leave_turn(pixel: u32) {
-    for (var s = listing.sample; s < turn_end(); s += 1u) {
-        picture[frame.samples * pixel + s] = seen_at[s];
-    }
-}
-
-// Samples over what lies behind each; the mean of all of them, if the turn has all.
-fn end_turn(pixel: u32) {
+// If more is to come, what has been seen; else samples over what lies behind each, and the mean of all of
+// them if the turn has all.
+fn leave_turn(pixel: u32, ends: bool) {
     let first = frame.samples * pixel;
+    if !ends {
+        for (var s = listing.sample; s < turn_end(); s += 1u) {
+            picture[first + s] = seen_at[s];
+        }
+        return;
+    }
     var colours: array<vec3<f32>, SAMPLES_MAX>;
     for (var s = listing.sample; s < turn_end(); s += 1u) {
         colours[s] = seen_at[s].rgb + seen_at[s].a * behind(first + s);

@@ -34,3 +34,11 @@ fn is_visible(at: u32, end: u32) -> bool {
     }
     return nodes[at].key < end;
 }
+
+// Before the first layer of a pixel.
+fn begin_list(pixel: u32) {
+    if pixel < band_pixels() {
+        picture[pixel] = vec4(0.0, 0.0, 0.0, 1.0);
+        cursors[pixel] = heads[pixel];
+    }
+}

@@ -12,13 +12,13 @@ mod targets;
 
 use std::time::Duration;
 
-use triptych_spec::abuffer::{Opaque, Sorted};
+use triptych_spec::abuffer::{Lists, Node, Opaque, Sorted};
 
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
 use crate::pass::Pass;
-use crate::raster::Rasterizer;
+use crate::raster::{Rasterizer, Ready};
 pub use following::{Following, Shading, follow};
 pub use once::{Once, Single, once};
 pub use peeling::{Peeling, Technique, is_wide};
@@ -107,6 +107,65 @@ fn frame(rasterizer: &Rasterizer<'_>, band: Band, [r, g, b]: [f32; 3]) -> Frame 
     Frame {
         background: [r, g, b, 1.0],
         ..rasterizer.frame(band)
+    }
+}
+
+/// The whole target, and its pixels, for what has no bands.
+fn whole(rasterizer: &Rasterizer<'_>) -> Result<(Band, u64), GpuError> {
+    let band = Band::whole(rasterizer.size);
+    let pixels = u64::from(band.pixels(rasterizer.size));
+    if pixels > PIXELS_MAX {
+        return Err(GpuError::Limit {
+            adapter: rasterizer.gpu.name.clone(),
+            what: "a whole target",
+            needed: pixels,
+            limit: PIXELS_MAX,
+        });
+    }
+    Ok((band, pixels))
+}
+
+/// Sorted lists that are only read, and where each pixel stands in its own; twin: `sorted.wgsl`.
+fn read_lists(gpu: &Gpu, lists: &Lists, pixels: u64) -> Result<Vec<Buffer>, GpuError> {
+    let node = |n: &Node| [n.key, n.next, n.prim, n.mask];
+    let nodes: Vec<[u32; 4]> = lists.nodes.iter().map(node).collect();
+    Ok(vec![
+        ("heads", gpu.upload("heads", &lists.heads)?),
+        ("nodes", gpu.upload("nodes", &nodes)?),
+        ("picture", gpu.storage("picture", 16 * pixels)?),
+        ("cursors", gpu.storage("cursors", 4 * pixels)?),
+        ("unfinished", gpu.storage("unfinished", 4)?),
+    ])
+}
+
+/// A buffer by the name of its variable.
+type Buffer = (&'static str, wgpu::Buffer);
+
+fn by_name<'b>(buffers: &'b [Buffer], name: &str) -> &'b wgpu::Buffer {
+    let found = buffers.iter().find(|(other, _)| *other == name);
+    &found.expect("it was made for the kernels").1
+}
+
+/// Runs passes over lists. What needs another dispatch says so in the last.
+fn run_through<'p>(
+    rasterizer: &Rasterizer<'_>,
+    passes: impl Iterator<Item = &'p Ready>,
+    unfinished: &wgpu::Buffer,
+    stage: &'static str,
+) -> Result<(), GpuError> {
+    let gpu = rasterizer.gpu;
+    let mut encoder = gpu.encoder();
+    for pass in passes {
+        encoder.clear_buffer(unfinished, 0, None);
+        rasterizer.record(std::slice::from_ref(pass), &mut encoder);
+    }
+    gpu.submit(encoder)?;
+    match gpu.word(unfinished, 0)? {
+        0 => Ok(()),
+        _ => Err(GpuError::Endless {
+            adapter: gpu.name.clone(),
+            stage,
+        }),
     }
 }
 

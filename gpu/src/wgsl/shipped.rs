@@ -37,6 +37,8 @@ const FILES: &[(&str, &str)] = shipped![
     "entry",
     "fan_scan",
     "fans",
+    "followed",
+    "followed_samples",
     "frame",
     "grid",
     "hbao",

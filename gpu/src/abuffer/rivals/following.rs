@@ -4,7 +4,9 @@ use std::time::Instant;
 
 use triptych_spec::abuffer::{Lens, Lists};
 
-use super::{Given, PIXELS_MAX, Rival, Surfaces, frame, image};
+use super::{
+    Buffer, Given, Rival, Surfaces, by_name, frame, image, read_lists, run_through, whole,
+};
 use crate::abuffer::STEPS;
 use crate::error::GpuError;
 use crate::frame::Band;
@@ -23,7 +25,7 @@ pub enum Shading {
 /// A shading that is set up over a whole target.
 pub struct Following<'r, 'g> {
     rasterizer: &'r Rasterizer<'g>,
-    buffers: Vec<(&'static str, wgpu::Buffer)>,
+    buffers: Vec<Buffer>,
     clear: Ready,
     /// Again and again: lists go on by so many layers.
     each: Vec<Ready>,
@@ -42,26 +44,9 @@ impl<'r, 'g> Following<'r, 'g> {
         lists: &Lists,
     ) -> Result<Self, GpuError> {
         let gpu = rasterizer.gpu;
-        let band = Band::whole(rasterizer.size);
-        let pixels = u64::from(band.pixels(rasterizer.size));
-        if pixels > PIXELS_MAX {
-            return Err(GpuError::Limit {
-                adapter: gpu.name.clone(),
-                what: "a whole target",
-                needed: pixels,
-                limit: PIXELS_MAX,
-            });
-        }
+        let (band, pixels) = whole(rasterizer)?;
         let surfaces = Surfaces::upload(rasterizer, given.opaque, band)?;
-        let node = |n: &triptych_spec::abuffer::Node| [n.key, n.next, n.prim, n.mask];
-        let nodes: Vec<[u32; 4]> = lists.nodes.iter().map(node).collect();
-        let mut buffers = vec![
-            ("heads", gpu.upload("heads", &lists.heads)?),
-            ("nodes", gpu.upload("nodes", &nodes)?),
-            ("picture", gpu.storage("picture", 16 * pixels)?),
-            ("cursors", gpu.storage("cursors", 4 * pixels)?),
-            ("unfinished", gpu.storage("unfinished", 4)?),
-        ];
+        let mut buffers = read_lists(gpu, lists, pixels)?;
         match shading {
             Shading::Density(sigma) => {
                 let words = [sigma, 0.0, 0.0, 0.0];
@@ -118,24 +103,14 @@ impl<'r, 'g> Following<'r, 'g> {
     /// [`GpuError::Endless`] where a list is longer; whatever the device reports.
     pub fn run(&self, layers: u32) -> Result<Vec<[f32; 3]>, GpuError> {
         let (rasterizer, gpu) = (self.rasterizer, self.rasterizer.gpu);
-        let mut encoder = gpu.encoder();
-        for pass in self.passes(layers) {
-            // What needs another dispatch says so in the last.
-            encoder.clear_buffer(self.buffer("unfinished"), 0, None);
-            rasterizer.record(std::slice::from_ref(pass), &mut encoder);
-        }
-        gpu.submit(encoder)?;
-        if gpu.word(self.buffer("unfinished"), 0)? != 0 {
-            return Err(GpuError::Endless {
-                adapter: gpu.name.clone(),
-                stage: match self.after.is_empty() {
-                    true => "density",
-                    false => "defocus",
-                },
-            });
-        }
+        let stage = match self.after.is_empty() {
+            true => "density",
+            false => "defocus",
+        };
+        let unfinished = by_name(&self.buffers, "unfinished");
+        run_through(rasterizer, self.passes(layers), unfinished, stage)?;
         let pixels = Band::whole(rasterizer.size).pixels(rasterizer.size);
-        image(gpu, self.buffer("picture"), pixels)
+        image(gpu, by_name(&self.buffers, "picture"), pixels)
     }
 
     /// Seconds of a run of so many layers, of the only span of a timer.
@@ -151,11 +126,6 @@ impl<'r, 'g> Following<'r, 'g> {
             }
         })?;
         Ok(spans[0])
-    }
-
-    fn buffer(&self, name: &str) -> &wgpu::Buffer {
-        let found = self.buffers.iter().find(|(other, _)| *other == name);
-        &found.expect("it was made for the kernels").1
     }
 
     /// Bytes of its buffers, lists and all.

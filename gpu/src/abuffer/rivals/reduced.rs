@@ -5,11 +5,10 @@ use std::time::{Duration, Instant};
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::{Lists, Opaque, Reduction};
 
-use super::{Given, PIXELS_MAX, Rival, Surfaces, frame, image};
+use super::{Given, Rival, Surfaces, by_name, frame, image, read_lists, run_through, whole};
 use crate::abuffer::STEPS;
 use crate::error::GpuError;
-use crate::frame::Band;
-use crate::raster::{Rasterizer, Ready};
+use crate::raster::Rasterizer;
 
 /// What kernels are told of a reduction. Twin: `Reduction` in `reduced.wgsl`.
 #[repr(C)]
@@ -53,16 +52,7 @@ pub fn reduce(
     let gpu = full.gpu;
     full.take_passes();
     low.rasterizer.take_passes();
-    let whole = Band::whole(full.size);
-    let pixels = u64::from(whole.pixels(full.size));
-    if pixels > PIXELS_MAX {
-        return Err(GpuError::Limit {
-            adapter: gpu.name.clone(),
-            what: "a whole target",
-            needed: pixels,
-            limit: PIXELS_MAX,
-        });
-    }
+    let (band, pixels) = whole(full)?;
     let words = Reducing {
         halvings: reduction.halvings,
         across: low.rasterizer.size.width,
@@ -73,7 +63,7 @@ pub fn reduce(
     let guide = gpu.upload("guide", &low.opaque.key)?;
     let reducing = gpu.uniform("reduction", &words)?;
     let shown = gpu.storage("picture", 16 * pixels)?;
-    let surfaces = Surfaces::upload(full, given.opaque, whole)?;
+    let surfaces = Surfaces::upload(full, given.opaque, band)?;
     let mut named = vec![
         ("picture", &shown),
         ("reduced_layer", &blended.layers),
@@ -81,15 +71,19 @@ pub fn reduce(
         ("reduction", &reducing),
     ];
     named.extend(surfaces.named());
-    let above = frame(full, whole, given.background);
+    let above = frame(full, band, given.background);
     let below = low.rasterizer.take_passes();
     let show = |stage| -> Result<Rival, GpuError> {
         let pass = full.ready_per_pixel("reduced", stage, above, &named)?;
-        let time = submit(full, std::slice::from_ref(&pass), None)?;
+        let mut encoder = gpu.encoder();
+        full.record(std::slice::from_ref(&pass), &mut encoder);
+        let start = Instant::now();
+        gpu.submit(encoder)?;
+        let time = start.elapsed();
         let mut passes = below.clone();
         passes.extend(full.take_passes());
         Ok(Rival {
-            image: image(gpu, &shown, whole.pixels(full.size))?,
+            image: image(gpu, &shown, band.pixels(full.size))?,
             time: blended.time + time,
             passes,
             bytes: blended.bytes + guide.size() + shown.size(),
@@ -112,17 +106,8 @@ struct Blended {
 /// Blends the lists of a reduced target, without what lies behind.
 fn blend(low: Low<'_, '_>, given: Given<'_>) -> Result<Blended, GpuError> {
     let (rasterizer, gpu) = (low.rasterizer, low.rasterizer.gpu);
-    let band = Band::whole(rasterizer.size);
-    let pixels = u64::from(band.pixels(rasterizer.size));
-    let node = |n: &triptych_spec::abuffer::Node| [n.key, n.next, n.prim, n.mask];
-    let nodes: Vec<[u32; 4]> = low.lists.nodes.iter().map(node).collect();
-    let own = [
-        ("picture", gpu.storage("reduced_layer", 16 * pixels)?),
-        ("unfinished", gpu.storage("unfinished", 4)?),
-        ("heads", gpu.upload("heads", &low.lists.heads)?),
-        ("nodes", gpu.upload("nodes", &nodes)?),
-        ("cursors", gpu.storage("cursors", 4 * pixels)?),
-    ];
+    let (band, pixels) = whole(rasterizer)?;
+    let own = read_lists(gpu, low.lists, pixels)?;
     let surfaces = Surfaces::upload(rasterizer, low.opaque, band)?;
     let mut named: Vec<_> = own.iter().map(|(name, buffer)| (*name, buffer)).collect();
     named.extend(surfaces.named());
@@ -132,35 +117,16 @@ fn blend(low: Low<'_, '_>, given: Given<'_>) -> Result<Blended, GpuError> {
     for _ in 0..=u64::from(low.layers) / STEPS {
         passes.push(ready("reduced_layers")?);
     }
-    let [(_, layers), (_, unfinished), ..] = &own;
-    let time = submit(rasterizer, &passes, Some(unfinished))?;
-    if gpu.word(unfinished, 0)? != 0 {
-        return Err(GpuError::Endless {
-            adapter: gpu.name.clone(),
-            stage: "reduced",
-        });
-    }
-    Ok(Blended {
-        layers: layers.clone(),
-        bytes: own.iter().map(|(_, buffer)| buffer.size()).sum(),
-        time,
-    })
-}
-
-/// Runs passes; what needs another dispatch says so in the last.
-fn submit(
-    rasterizer: &Rasterizer<'_>,
-    passes: &[Ready],
-    unfinished: Option<&wgpu::Buffer>,
-) -> Result<Duration, GpuError> {
-    let mut encoder = rasterizer.gpu.encoder();
-    for pass in passes {
-        if let Some(word) = unfinished {
-            encoder.clear_buffer(word, 0, None);
-        }
-        rasterizer.record(std::slice::from_ref(pass), &mut encoder);
-    }
     let start = Instant::now();
-    rasterizer.gpu.submit(encoder)?;
-    Ok(start.elapsed())
+    run_through(
+        rasterizer,
+        passes.iter(),
+        by_name(&own, "unfinished"),
+        "reduced",
+    )?;
+    Ok(Blended {
+        time: start.elapsed(),
+        layers: by_name(&own, "picture").clone(),
+        bytes: own.iter().map(|(_, buffer)| buffer.size()).sum(),
+    })
 }
