@@ -59,14 +59,10 @@ fn wrong(
     let rasterizer = Rasterizer::new(gpu, kernels, path, &run.primitives, faces);
     let rasterizer = rasterizer.unwrap_or_else(|e| panic!("{e}"));
     let options = Options {
-        given: None,
         capacity: Some(run.lists.attempts),
-        opaque: plan.opaque,
-        lists: plan.lists,
-        depth_test: plan.depth_test,
         order: triptych_spec::abuffer::Order::Centroid,
         once: false,
-        background: scene.background,
+        ..plan.abuffer(scene)
     };
     let timed = Timed::new(&rasterizer, options, |prim| run.is_opaque(prim));
     let mut timed = timed.unwrap_or_else(|e| panic!("{e}"));

@@ -1,14 +1,21 @@
 //! What a scene needs, decided before anything runs.
 
+mod grid;
 mod layouts;
+mod ldm;
 mod rivals;
+mod rsm;
 
+use triptych_gpu::abuffer::Options;
 use triptych_spec::abuffer::Order;
 use triptych_spec::scene::Scene;
 
 use crate::registry::{Chain, stages_of};
 use crate::scene::Loaded;
+pub use grid::GridPlan;
+pub use ldm::LdmPlan;
 pub use rivals::Asked;
+pub use rsm::RsmPlan;
 
 /// A condition inside stage resolve, where pixels have several samples.
 pub const ONCE: &str = "shade once";
@@ -124,6 +131,20 @@ impl Plan {
         }
     }
 
+    /// What lists and their picture are made by.
+    pub fn abuffer(&self, scene: &Scene) -> Options<'static> {
+        Options {
+            given: None,
+            capacity: None,
+            opaque: self.opaque,
+            lists: self.lists,
+            depth_test: self.depth_test,
+            order: scene.order,
+            once: self.once,
+            background: scene.background,
+        }
+    }
+
     /// Why a pass does not run; `None` if it does.
     pub fn skipped(&self, name: &str) -> Option<String> {
         skipped(&self.passes, name)
@@ -171,39 +192,6 @@ pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
     }
 }
 
-/// What a scene with a grid needs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct GridPlan {
-    /// Every pass of the family, in order.
-    pub passes: Vec<Pass>,
-}
-
-impl GridPlan {
-    /// Without triangles there is no grid, and no ray meets anything.
-    pub fn new(loaded: &Loaded, skip: bool) -> Self {
-        let triangles = loaded.scene.triangles.len();
-        let needed = triangles > 0;
-        let pass = |stage: &crate::registry::Stage| Pass {
-            name: stage.name,
-            runs: needed || !skip,
-            reason: match (needed, skip) {
-                (true, _) => format!("{triangles} triangles block rays"),
-                (false, true) => "nothing blocks a ray".to_owned(),
-                (false, false) => "nothing blocks a ray, but nothing is skipped".to_owned(),
-            },
-        };
-        Self {
-            passes: stages_of(Chain::Rays).map(pass).collect(),
-        }
-    }
-
-    /// Why nothing runs; `None` if all does.
-    pub fn skipped(&self) -> Option<String> {
-        let idle = self.passes.iter().find(|pass| !pass.runs)?;
-        Some(format!("plan: {}", idle.reason))
-    }
-}
-
 /// Every stage of a chain, by what needs it, or by why nothing does.
 fn decided(
     chain: Chain,
@@ -229,72 +217,4 @@ fn decided(
 fn skipped(passes: &[Pass], name: &str) -> Option<String> {
     let pass = passes.iter().find(|pass| pass.name == name)?;
     (!pass.runs).then(|| format!("plan: {}", pass.reason))
-}
-
-/// What a scene with an `[rsm]` needs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RsmPlan {
-    /// Every pass of the family, in order.
-    pub passes: Vec<Pass>,
-}
-
-impl RsmPlan {
-    /// Without surfaces there is no light to gather; without blockers no grid, no buffer B and
-    /// nothing to blur; with a blur over no neighbours, buffer B is what it was.
-    pub fn new(loaded: &Loaded, skip: bool) -> Self {
-        let [seen, blocking] = loaded.parts();
-        let radius = loaded.file.rsm.as_ref().map_or(0, |r| r.get_ref().blur.0);
-        let see = || Ok(format!("{seen} triangles are seen"));
-        let needed = |name: &str| match name {
-            "gbuffer" | "compose" => see(),
-            _ if seen == 0 => Err("nothing is seen"),
-            "block" | "blur" if blocking == 0 => Err("nothing blocks indirect light"),
-            "blur" if radius == 0 => Err("a mean over one pixel is that pixel"),
-            "block" | "blur" => Ok(format!("{blocking} triangles block indirect light")),
-            _ => see(),
-        };
-        Self {
-            passes: decided(Chain::Indirect, skip, needed),
-        }
-    }
-
-    /// Why a pass does not run; `None` if it does.
-    pub fn skipped(&self, name: &str) -> Option<String> {
-        skipped(&self.passes, name)
-    }
-}
-
-/// What a scene with an `[ldm]` needs. Which directions its receivers' normals need is known only
-/// once they are seen: the spec's facts count those that are left out.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LdmPlan {
-    /// Every pass of the family, in order.
-    pub passes: Vec<Pass>,
-}
-
-impl LdmPlan {
-    /// Without surfaces nobody asks what is open; without blockers there is nothing in any map,
-    /// and everything is; without a sky there is no light; only what the scene says mirrors.
-    pub fn new(loaded: &Loaded, skip: bool) -> Self {
-        let [seen, blocking] = loaded.parts();
-        let ldm = loaded.file.ldm.as_ref().map(|l| l.get_ref());
-        let maps = ldm.map_or(0, super::scene::ldm::Ldm::maps);
-        let mirrors = ldm.is_some_and(|l| l.mirror);
-        let needed = |name: &str| match name {
-            _ if seen == 0 => Err("nothing is seen"),
-            "environment" if loaded.sky.is_none() => Err("there is no sky"),
-            "mirror" if !mirrors => Err("nothing mirrors"),
-            "layers" | "chain" | "neighbours" if blocking == 0 => Err("nothing blocks"),
-            "layers" | "chain" => Ok(format!("{blocking} triangles in {maps} maps")),
-            _ => Ok(format!("{seen} triangles are seen")),
-        };
-        Self {
-            passes: decided(Chain::Maps, skip, needed),
-        }
-    }
-
-    /// Why a pass does not run; `None` if it does.
-    pub fn skipped(&self, name: &str) -> Option<String> {
-        skipped(&self.passes, name)
-    }
 }

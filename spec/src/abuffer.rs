@@ -20,6 +20,7 @@ mod multisample;
 mod nearest;
 mod peel;
 mod reduced;
+mod sorted;
 mod weighted;
 
 use crate::bound::{Bounded, TINY, gamma};
@@ -34,6 +35,7 @@ pub use multisample::{Order, average, resolve_pixels, resolve_samples, visible};
 pub use nearest::{nearest_layers, nearest_of};
 pub use peel::{LAYERS_MAX, peel};
 pub use reduced::{HALVINGS_MAX, Reduced, Reduction, Upsampling, reduced};
+pub use sorted::{Sorted, sort};
 pub use weighted::{SUM_LEAST, WEIGHT_LEAST, WEIGHT_MOST, weighted};
 
 /// End of a list, and an empty list's head (section 3: "a special flag, e.g. -1").
@@ -80,23 +82,6 @@ pub struct Lists {
     pub attempts: u32,
     /// Number of addresses.
     pub capacity: u32,
-}
-
-/// Lists as runs of an array: `offsets[p]..offsets[p + 1]` is pixel `p`, nearest
-/// fragment first, ties by [`Fragment::prim`].
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Sorted {
-    /// Where each pixel's run starts; one entry more than there are pixels.
-    pub offsets: Vec<u32>,
-    /// The fragments.
-    pub fragments: Vec<Fragment>,
-}
-
-impl Sorted {
-    /// The fragments of a pixel, nearest first.
-    pub fn list(&self, pixel: usize) -> &[Fragment] {
-        &self.fragments[self.offsets[pixel] as usize..self.offsets[pixel + 1] as usize]
-    }
 }
 
 impl Opaque {
@@ -181,39 +166,6 @@ fn insert(lists: &mut Lists, f: Fragment, colour: [f32; 4]) {
         mask: f.mask,
     });
     lists.colours.push(colour);
-}
-
-/// Stage `sort`: each list in order of `(key, prim)` (section 4.1, step 3). Rows
-/// of `prims` are in order of source triangle, instance and piece, so this is
-/// the total order that the comparison asks for.
-pub fn sort(lists: &Lists) -> Sorted {
-    let mut sorted = Sorted {
-        offsets: vec![0],
-        fragments: Vec::with_capacity(lists.nodes.len()),
-    };
-    for (pixel, &head) in (0_u32..).zip(&lists.heads) {
-        let start = sorted.fragments.len();
-        let mut at = head;
-        while at != EOL {
-            let Node {
-                key,
-                next,
-                prim,
-                mask,
-            } = lists.nodes[at as usize];
-            sorted.fragments.push(Fragment {
-                pixel,
-                prim,
-                key,
-                mask,
-            });
-            at = next;
-        }
-        sorted.fragments[start..].sort_unstable_by_key(|f| (f.key, f.prim));
-        let end = u32::try_from(sorted.fragments.len()).expect("fewer than 2^32 nodes");
-        sorted.offsets.push(end);
-    }
-    sorted
 }
 
 /// Stage `resolve`: every list blended over what lies behind it, nearest first

@@ -36,8 +36,7 @@ fn bands_of_tiles_give_the_bytes_of_the_whole() {
     let loaded = load("abuffer/hidden");
     let (scene, plan) = (&loaded.scene, Plan::new(&loaded.scene, true));
     let run = SpecRun::new(scene, primitives(scene, SUBPIXEL_BITS), &plan).expect("a small scene");
-    let ends = run.sorted.offsets.iter().step_by(scene.size.width as usize);
-    let rows: Vec<u32> = ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect();
+    let rows = run.sorted.rows(scene.size.width);
     for (gpu, kernels) in devices(|_| {}) {
         let rasterizer =
             Rasterizer::new(&gpu, &kernels, Path::Compute, &run.primitives, &run.faces)

@@ -1,6 +1,6 @@
 //! Frames that are timed: in bands, in the same buffers one after another.
 
-use triptych_gpu::abuffer::{self, Part, Timed, with_layers};
+use triptych_gpu::abuffer::{Part, Timed, with_layers};
 use triptych_gpu::context;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::{Path, Rasterizer};
@@ -37,9 +37,7 @@ struct Leg<'l> {
 impl Leg<'_> {
     /// Fragments of each row.
     fn rows(&self) -> Vec<u32> {
-        let width = self.loaded.scene.size.width as usize;
-        let ends = self.run.sorted.offsets.iter().step_by(width);
-        ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect()
+        self.run.sorted.rows(self.loaded.scene.size.width)
     }
 
     /// Makes the frame within so many bytes, with room for `rows`; and in how many bands.
@@ -48,16 +46,7 @@ impl Leg<'_> {
         let (gpu, scene) = (&self.adapter.gpu, &self.loaded.scene);
         let rasterizer = Rasterizer::new(gpu, self.kernels, self.path, &run.primitives, &run.faces);
         let rasterizer = rasterizer.expect("a small scene");
-        let options = abuffer::Options {
-            given: None,
-            capacity: None,
-            opaque: plan.opaque,
-            lists: plan.lists,
-            depth_test: plan.depth_test,
-            order: scene.order,
-            once: plan.once,
-            background: scene.background,
-        };
+        let options = plan.abuffer(scene);
         let opaque = |prim| run.is_opaque(prim);
         let timed = Timed::in_bands(&rasterizer, options, rows, budget, opaque);
         let mut timed = timed.expect("it fits in bands");

@@ -7,10 +7,10 @@ use std::ops::Range;
 
 use proptest::prelude::*;
 use triptych_spec::abuffer::{EOL, NOTHING, Opaque, build, opaque, resolve, sort};
-use triptych_spec::raster::{Fragment, Samples, Setup, cover, sample};
+use triptych_spec::raster::{Fragment, Samples, Setup, cover};
 use triptych_spec::scene::Size;
 use triptych_spec::tiles::{
-    Bins, Jagged, LISTS, ROWS, SIDE, bin, digest, jagged, linked, local, shade, sorted,
+    Bins, Jagged, LISTS, ROWS, SIDE, bin, digest, jagged, linked, local, packed, shade, sorted,
 };
 use triptych_spec::vertex::Primitives;
 
@@ -32,6 +32,12 @@ fn whole(layers: &Layers) -> Bins {
 /// A row of a target somewhere, and one that comes after it.
 fn rows(height: u32) -> impl Strategy<Value = Range<u32>> {
     (0..height).prop_flat_map(move |first| (first + 1..=height).prop_map(move |end| first..end))
+}
+
+/// So many as adapters may have.
+fn samples() -> impl Strategy<Value = Samples> {
+    let standard = |count| Samples::standard(count).expect("a pattern");
+    prop::sample::select(Samples::COUNTS.to_vec()).prop_map(standard)
 }
 
 /// Every slot of a tile's lists, row by row.
@@ -79,10 +85,15 @@ pub fn stack(layers: u32) -> Layers {
 proptest! {
     #![proptest_config(config(256))]
 
-    /// A tile lists whatever covers a sample of it, and nothing that an edge keeps out of all its
-    /// samples; rows of a target have the bins of the whole one where tiles begin alike.
+    /// A tile lists whatever covers a sample of it, and nothing that an edge keeps out of all that its
+    /// samples span; rows of a target have the bins of the whole one where tiles begin alike.
     #[test]
-    fn bins_hold_what_is_covered(primitives in soup(1..24), rows in rows(8)) {
+    fn bins_hold_what_is_covered(
+        mut primitives in soup(1..24),
+        samples in samples(),
+        rows in rows(8),
+    ) {
+        primitives.samples = samples;
         let bins = bin(&primitives, rows.clone(), |_| true);
         let tile_of = |f: &Fragment| {
             let (x, y) = (f.pixel % primitives.size.width, f.pixel / primitives.size.width);
@@ -101,9 +112,13 @@ proptest! {
             prop_assert!(bin.windows(2).all(|pair| pair[0] < pair[1]), "rising");
             for &prim in bin {
                 let setup = Setup::new(&primitives, prim).expect("it has an area");
-                let edges = (0..LISTS).map(|l| {
-                    let point = [x + l % SIDE, y + l / SIDE].map(|p| sample(p, primitives.bits));
-                    setup.edges(point)
+                let [low, high] = samples.extent(primitives.bits);
+                let ends = |first: u32, axis: usize| {
+                    let at = |pixel: u32| i64::from(pixel) << primitives.bits;
+                    [at(first) + low[axis], at(first + SIDE - 1) + high[axis]]
+                };
+                let edges = ends(y, 1).into_iter().flat_map(|y| {
+                    ends(x, 0).map(|x| setup.edges([x, y]))
                 });
                 let best = edges.reduce(|a, b| [0, 1, 2].map(|i| a[i].max(b[i])));
                 prop_assert!(best.is_some_and(|best| best.iter().all(|e| *e >= 0)), "{best:?}");
@@ -115,9 +130,11 @@ proptest! {
     /// picture.
     #[test]
     fn lists_are_those_of_the_abuffer(
-        layers in coloured(soup(1..24)),
+        mut layers in coloured(soup(1..24)),
+        samples in samples(),
         depth_test: bool,
     ) {
+        (layers.primitives.samples, layers.scene.samples) = (samples, samples);
         let Layers { scene, primitives } = &layers;
         let surfaces = opaque(scene, primitives);
         let bins = whole(&layers);
@@ -134,7 +151,12 @@ proptest! {
     /// A tile's counter counts all of its fragments, and as many nodes are stored as there is room for;
     /// with room for all, the lists are those of stage build, and so is what is left of them.
     #[test]
-    fn tiles_have_counters_of_their_own(layers in coloured(soup(1..24)), capacity in 0_u32..96) {
+    fn tiles_have_counters_of_their_own(
+        mut layers in coloured(soup(1..24)),
+        samples in samples(),
+        capacity in 0_u32..96,
+    ) {
+        (layers.primitives.samples, layers.scene.samples) = (samples, samples);
         let Layers { scene, primitives } = &layers;
         let surfaces = opaque(scene, primitives);
         let own = jagged(primitives, &surfaces, false, &whole(&layers));
@@ -158,7 +180,7 @@ proptest! {
             let mut at = all.heads[pixel];
             while at != EOL {
                 let node = all.nodes[at as usize].expect("what is linked is stored");
-                list.push([node.key, node.prim]);
+                list.push([node.key, packed(samples, node.prim, node.mask)]);
                 at = node.next;
             }
             list.sort_unstable();

@@ -217,13 +217,9 @@ mod tests {
         assert_eq!([scene.triangles.len(), opaque], [602_020, 348_330]);
         let plan = Plan::new(scene, true);
         let run = SpecRun::new(scene, primitives(scene, 8), &plan).unwrap();
-        let lengths = || run.sorted.offsets.windows(2).map(|ends| ends[1] - ends[0]);
-        let deepest = lengths().max();
-        assert!(
-            (56..=64).contains(&deepest.unwrap_or(0)),
-            "{deepest:?} layers"
-        );
-        let share = lengths().filter(|n| *n > 0).count() as f64 / (1280.0 * 720.0);
+        let deepest = run.sorted.longest();
+        assert!((56..=64).contains(&deepest), "{deepest} layers");
+        let share = run.sorted.lengths().filter(|n| *n > 0).count() as f64 / (1280.0 * 720.0);
         assert!(
             (share - 0.4).abs() < 0.01,
             "{share} of the pixels have a list"

@@ -2,7 +2,6 @@
 
 use std::collections::btree_map::{BTreeMap, Entry};
 
-use triptych_gpu::abuffer;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_spec::raster::Samples;
 use triptych_spec::vertex::SUBPIXEL_BITS;
@@ -246,16 +245,7 @@ fn leg<'r>(
         rasterizer,
         grid,
         scene,
-        options: abuffer::Options {
-            given: None,
-            capacity: None,
-            opaque: plan.opaque,
-            lists: plan.lists,
-            depth_test: plan.depth_test,
-            order: scene.order,
-            once: plan.once,
-            background: scene.background,
-        },
+        options: plan.abuffer(scene),
         clock: &station.clock,
         budget: options.budget(station.is_software()),
         runs: options.runs(station.is_software()),

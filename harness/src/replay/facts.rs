@@ -35,7 +35,7 @@ impl Facts {
             sorted,
             ..
         } = spec;
-        let lengths = sorted.offsets.windows(2).map(|w| w[1] - w[0]);
+        let lengths = sorted.lengths();
         let snapped = primitives
             .snapped
             .iter()

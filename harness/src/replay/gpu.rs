@@ -107,12 +107,7 @@ impl GpuLeg<'_> {
                 sorted: relinked.is_some(),
             }),
             capacity: self.capacity,
-            opaque: self.plan.opaque,
-            lists: self.plan.lists,
-            depth_test: self.plan.depth_test,
-            order: self.scene.order,
-            once: self.plan.once,
-            background: self.scene.background,
+            ..self.plan.abuffer(self.scene)
         };
         let inspect = |_: Band, lists: &Lists| certify(lists).longest();
         let abuffer = abuffer::run(rasterizer, options, |prim| spec.is_opaque(prim), inspect)?;

@@ -62,10 +62,10 @@ pub fn causes(spec: Option<&Observed<Spec, SpecRun>>, spots: &[Spot]) -> Option<
 
 /// Layers per pixel: transparent ones, and one for an opaque surface.
 fn layers(spec: &SpecRun) -> Vec<u32> {
-    let lists = spec.sorted.offsets.windows(2).map(|w| w[1] - w[0]);
     let samples = spec.primitives.samples.count() as usize;
     let surfaces = spec.opaque.prim.chunks(samples);
     let opaque = surfaces.map(|prims| u32::from(prims.iter().any(|p| *p != NOTHING)));
+    let lists = spec.sorted.lengths();
     lists
         .zip(opaque)
         .map(|(list, opaque)| list + opaque)

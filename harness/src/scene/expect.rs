@@ -120,8 +120,7 @@ pub fn check(
     sorted: &Sorted,
 ) -> Vec<String> {
     let mut wrong = Vec::new();
-    let longest = sorted.offsets.windows(2).map(|w| w[1] - w[0]).max();
-    let longest = u64::from(longest.unwrap_or(0));
+    let longest = u64::from(sorted.longest());
     let hidden = opaque.pixels(primitives.size.pixels());
     let counts = coverage(primitives);
     let covered = counts.iter().map(|c| u64::from(*c)).sum();

@@ -220,11 +220,7 @@ fn tiles_show_the_nearest() {
             capacity: None,
             drawn: tiles::DRAWN,
         };
-        let ends = sorted
-            .offsets
-            .iter()
-            .step_by(rasterizer.size.width as usize);
-        let rows: Vec<u32> = ends.clone().zip(ends.skip(1)).map(|(a, b)| b - a).collect();
+        let rows = sorted.rows(rasterizer.size.width);
         let ways = [
             ("shade", Way::Runs),
             ("local", Way::Local),

@@ -1,4 +1,3 @@
-use triptych_gpu::abuffer;
 use triptych_gpu::context::{Gpu, adapters};
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
@@ -27,16 +26,7 @@ fn made(gpu: &Gpu, sources: Sources, most: u64, budget: u64) -> Vec<Result<usize
         rasterizer: &rasterizer.expect("a small scene"),
         grid: &grid,
         scene,
-        options: abuffer::Options {
-            given: None,
-            capacity: None,
-            opaque: plan.opaque,
-            lists: plan.lists,
-            depth_test: plan.depth_test,
-            order: scene.order,
-            once: plan.once,
-            background: scene.background,
-        },
+        options: plan.abuffer(scene),
         clock: &Clock::Host("a test".to_owned()),
         budget,
         runs: 1,

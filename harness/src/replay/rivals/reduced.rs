@@ -105,18 +105,11 @@ impl GpuLeg<'_> {
             background: self.scene.background,
         };
         let lists = relinked(&must.lists.sorted, faces);
-        let longest = must
-            .lists
-            .sorted
-            .offsets
-            .windows(2)
-            .map(|run| run[1] - run[0])
-            .max();
         let low = Low {
             rasterizer: &low,
             opaque: &must.lists.opaque,
             lists: &lists,
-            layers: longest.unwrap_or(0),
+            layers: must.lists.sorted.longest(),
         };
         let seen: [Rival; 2] = reduce(full, low, given, must.reduction)?;
         for ((_, must), seen) in must.pictures.iter().zip(seen) {

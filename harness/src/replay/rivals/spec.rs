@@ -59,8 +59,7 @@ pub struct Listed {
 
 impl Listed {
     fn of(sorted: &Sorted, blend: impl Fn(&Sorted) -> Vec<[Bounded; 3]>) -> Self {
-        let lengths = sorted.offsets.windows(2).map(|run| run[1] - run[0]);
-        let longest = lengths.max().unwrap_or(0);
+        let longest = sorted.longest();
         let fewer = NEAREST.into_iter().rev().find(|n| *n < longest);
         let layers = fewer.unwrap_or(0);
         Self {
