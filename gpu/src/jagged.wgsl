@@ -7,6 +7,7 @@
 //#import draw
 //#import counter
 //#import digest
+//#import jagged_run
 
 struct List {
     // Its first entry, and CONTIGUOUS.
@@ -19,7 +20,8 @@ struct List {
 // The lists of a tile, in order of its pixels.
 @group(0) @binding(30) var<storage, read_write> lists: array<List>;
 
-// Of each tile, entries in rows before each.
+// Of each tile, where its rows are told of, and there how many entries lie before each. There are no more
+// rows than triangles in the tile's bin, so that they have the place that these have among the bins.
 @group(0) @binding(31) var<storage, read_write> rows: array<u32>;
 
 // The longest list of all; which kernels of stage shade have any, a bit for each; lists longer than LONG.
@@ -37,42 +39,31 @@ const CONTIGUOUS: u32 = 0x80000000u;
 // Each entry is nearer than the next.
 const IN_ORDER: u32 = 0x80000000u;
 
-// Entries of the longest list of a tile with rows.
-const ROWS: u32 = 64u;
+// Entries of the longest list of a tile with rows: no more than LONG, as the longest lists of all are
+// merged where they lie one after another.
+const ROWS: u32 = 512u;
 
 // Entries that an invocation blends in one go: llvmpipe leaves loops after 65,535 rounds.
 const AT_ONCE: u32 = 16384u;
 
+// Entries of the longest list that is sorted in registers.
+const IN_REGISTERS: u32 = 64u;
+
 // In `start`: its tile is done, and has no lists.
 const NO_LIST: u32 = 0xffffffffu;
 
-// A list as it is read and written.
-struct Run {
-    start: u32,
-    length: u32,
-    // Where its tile's rows are, or CONTIGUOUS.
-    row: u32,
-    in_order: bool,
-}
-
 fn run_at(tile: u32, lane: u32) -> Run {
     let list = lists[tile * WORKGROUP + lane];
-    let row = select(tile * ROWS, CONTIGUOUS, (list.start & CONTIGUOUS) != 0u);
+    let row = select(rows[tile], CONTIGUOUS, (list.start & CONTIGUOUS) != 0u);
     return Run(list.start & ~CONTIGUOUS, list.length, row, (list.filled & IN_ORDER) != 0u);
-}
-
-fn slot(run: Run, i: u32) -> u32 {
-    if run.row == CONTIGUOUS {
-        return run.start + i;
-    }
-    return run.start + rows[run.row + i];
 }
 
 const FROM_BACK: bool = false;
 
 // What an invocation keeps of its list while it is filled.
 struct Held {
-    run: Run,
+    // Where its list begins, and CONTIGUOUS.
+    start: u32,
     // The last fragment, and whether each was nearer than the next.
     last: Listed,
     in_order: bool,
@@ -90,11 +81,8 @@ fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
     let list = (*own).tile * WORKGROUP + (*own).lane;
     (*own).held.in_order = tiled.first == 0u;
     if fill {
-        let run = run_at((*own).tile, (*own).lane);
-        (*own).held.run = run;
-        if run.row != CONTIGUOUS {
-            own_rows[(*own).lane] = rows[run.row + (*own).lane];
-        }
+        (*own).held.start = lists[list].start;
+        take_rows((*own).tile, (*own).lane);
     }
     if tiled.first > 0u {
         (*own).count = select(lists[list].length, lists[list].filled & ~IN_ORDER, fill);
@@ -102,10 +90,18 @@ fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
     atomicStore(&kept[(*own).lane], (*own).count);
 }
 
+// The tile's rows, if it has any, to where all of the workgroup see them.
+fn take_rows(tile: u32, lane: u32) {
+    let bin = bin_of(tile);
+    for (var row = lane; row < min(bin.y - bin.x, ROWS); row += WORKGROUP) {
+        own_rows[row] = rows[rows[tile] + row];
+    }
+}
+
 fn put_small(tile: u32, pixel: u32, entry: Listed, fill: bool) {
     let i = atomicAdd(&kept[pixel], 1u);
     if fill {
-        write(run_at(tile, pixel), i, entry);
+        write(lists[tile * WORKGROUP + pixel].start, i, entry);
     }
 }
 
@@ -117,7 +113,7 @@ fn take_small(own: ptr<function, Pixel>) {
 
 fn put(own: ptr<function, Pixel>, entry: Listed, fill: bool) {
     if fill {
-        write((*own).held.run, (*own).count, entry);
+        write((*own).held.start, (*own).count, entry);
         let follows = (*own).count == 0u || less((*own).held.last, entry);
         (*own).held.in_order = (*own).held.in_order && follows;
         (*own).held.last = entry;
@@ -129,10 +125,10 @@ fn leave_pixel(own: Pixel) {
     atomicStore(&kept[own.lane], own.count);
 }
 
-fn write(run: Run, i: u32, entry: Listed) {
-    var address = run.start + i;
-    if run.row != CONTIGUOUS {
-        address = run.start + own_rows[i];
+fn write(start: u32, i: u32, entry: Listed) {
+    var address = (start & ~CONTIGUOUS) + i;
+    if (start & CONTIGUOUS) == 0u {
+        address = start + own_rows[i];
     }
     if address < tiled.capacity {
         listed[address] = entry;
@@ -161,53 +157,57 @@ fn fill_lists(tile: u32, lane: u32) {
     var own = draw(tile, lane, true);
     let in_order = own.held.in_order || own.count < 2u;
     lists[tile * WORKGROUP + lane].filled = own.count | select(0u, IN_ORDER, in_order);
-    atomicOr(&kernels_here, 1u << kernel_of(own.held.run, own.count, in_order));
+    let is_contiguous = (own.held.start & CONTIGUOUS) != 0u;
+    atomicOr(&kernels_here, 1u << kernel_of(is_contiguous, own.count, in_order));
     workgroupBarrier();
     if lane == 0u {
         atomicOr(&longest.kernels, atomicLoad(&kernels_here));
     }
 }
 
-// Which kernel of stage shade takes a list: those of up to 8, 16, 32, 64 entries, of lists that lie
-// one after another, and of lists that are blended as they are.
-fn kernel_of(run: Run, length: u32, in_order: bool) -> u32 {
+// Of lists that are sorted in memory, and of such that are blended as they are.
+const IN_MEMORY: u32 = 4u;
+const AS_IT_IS: u32 = 5u;
+
+// Which kernel of stage shade takes a list; the first ones are those of up to 8, 16, 32, 64 entries.
+fn kernel_of(is_contiguous: bool, length: u32, in_order: bool) -> u32 {
     if in_order && length <= AT_ONCE {
-        return 5u;
+        return AS_IT_IS;
     }
-    if run.row == CONTIGUOUS {
-        return 4u;
+    if is_contiguous || length > IN_REGISTERS {
+        return IN_MEMORY;
     }
     return u32(length > 8u) + u32(length > 16u) + u32(length > 32u);
 }
 
-// Of each length up to ROWS, the lists of a tile that have it, a bit each.
-var<workgroup> alike: array<atomic<u32>, 130>;
-var<workgroup> longest_here: atomic<u32>;
-var<workgroup> longest_of_tile: u32;
-var<workgroup> partial: array<u32, WORKGROUP>;
-var<workgroup> first_of_tile: u32;
-
-// How many of the bits before number `lane` are set.
-fn ones_before(bits: vec2<u32>, lane: u32) -> u32 {
-    let below = (1u << (lane % 32u)) - 1u;
-    if lane < 32u {
-        return countOneBits(bits.x & below);
-    }
-    return countOneBits(bits.x) + countOneBits(bits.y & below);
+fn kernel_of_run(run: Run) -> u32 {
+    return kernel_of(run.row == CONTIGUOUS, run.length, run.in_order);
 }
 
-// The sum of a value up to this invocation's own.
-fn sum_up_to(value: u32, lane: u32) -> u32 {
-    var sum = value;
-    for (var reach = 1u; reach < WORKGROUP; reach *= 2u) {
-        workgroupBarrier();
-        partial[lane] = sum;
-        workgroupBarrier();
-        if lane >= reach {
-            sum += partial[lane - reach];
-        }
+// Fragments of each pixel of a tile, all of them.
+var<workgroup> lengths: array<u32, WORKGROUP>;
+var<workgroup> first_of_tile: u32;
+
+// A list among those of its tile.
+struct Among {
+    // Entries of the longest, of all, and of all before this one.
+    longest: u32,
+    all: u32,
+    before: u32,
+    // Lists that begin before it in rows: longer ones, and those that are as long and stand before it.
+    rank: u32,
+}
+
+fn among(length: u32, lane: u32) -> Among {
+    var found = Among(0u, 0u, 0u, 0u);
+    for (var i = 0u; i < WORKGROUP; i += 1u) {
+        let other = lengths[i];
+        found.longest = max(found.longest, other);
+        found.all += other;
+        found.before += select(0u, other, i < lane);
+        found.rank += u32(other > length || (other == length && i < lane));
     }
-    return sum;
+    return found;
 }
 
 // All of a workgroup come along. The host has made sure that no sum is beyond SATURATED: a band's
@@ -215,61 +215,36 @@ fn sum_up_to(value: u32, lane: u32) -> u32 {
 fn place_lists(tile: u32, lane: u32) {
     let list = tile * WORKGROUP + lane;
     let length = lists[list].length;
-    for (var i = lane; i < 130u; i += WORKGROUP) {
-        atomicStore(&alike[i], 0u);
-    }
-    if lane == 0u {
-        atomicStore(&longest_here, 0u);
-    }
+    lengths[lane] = length;
     workgroupBarrier();
-    atomicMax(&longest_here, length);
-    atomicOr(&alike[2u * min(length, ROWS) + lane / 32u], 1u << (lane % 32u));
-    workgroupBarrier();
+    let own = among(length, lane);
     if lane == 0u {
-        longest_of_tile = atomicLoad(&longest_here);
-        atomicMax(&longest.length, longest_of_tile);
+        first_of_tile = atomicAdd(&counter, own.all);
+        atomicMax(&longest.length, own.longest);
     }
-    if workgroupUniformLoad(&longest_of_tile) > ROWS {
-        place_runs(list, length, lane);
+    let first = workgroupUniformLoad(&first_of_tile);
+    if own.longest > ROWS {
+        // One list after another.
+        lists[list].start = (first + own.before) | CONTIGUOUS;
+        if length > LONG {
+            longest.lists[atomicAdd(&longest.count, 1u)] = list;
+        }
     } else {
-        place_rows(tile, list, length, lane);
+        lists[list].start = first + own.rank;
+        place_rows(tile, own.longest, lane);
     }
 }
 
-// One list after another.
-fn place_runs(list: u32, length: u32, lane: u32) {
-    let end = sum_up_to(length, lane);
-    if lane == WORKGROUP - 1u {
-        first_of_tile = atomicAdd(&counter, end);
+fn place_rows(tile: u32, count: u32, lane: u32) {
+    let told = tiled.items + bin_of(tile).x;
+    if lane == 0u {
+        rows[tile] = told;
     }
-    lists[list].start = (workgroupUniformLoad(&first_of_tile) + end - length) | CONTIGUOUS;
-    if length > LONG {
-        longest.lists[atomicAdd(&longest.count, 1u)] = list;
+    for (var row = lane; row < count; row += WORKGROUP) {
+        var before = 0u;
+        for (var i = 0u; i < WORKGROUP; i += 1u) {
+            before += min(lengths[i], row);
+        }
+        rows[told + row] = before;
     }
-}
-
-fn alike_at(length: u32) -> vec2<u32> {
-    return vec2(atomicLoad(&alike[2u * length]), atomicLoad(&alike[2u * length + 1u]));
-}
-
-// In rows: lane l looks after row l as well, of the lists that are longer than l.
-fn place_rows(tile: u32, list: u32, length: u32, lane: u32) {
-    // Lengths from the longest down.
-    let down = alike_at(ROWS - lane);
-    let longer = sum_up_to(countOneBits(down.x) + countOneBits(down.y), lane);
-    workgroupBarrier();
-    partial[ROWS - 1u - lane] = longer;
-    workgroupBarrier();
-    let in_row = partial[lane];
-    // Lists that are longer, or as long and before this one.
-    var rank = ones_before(alike_at(length), lane);
-    if length < ROWS {
-        rank += partial[length];
-    }
-    let end = sum_up_to(in_row, lane);
-    rows[tile * ROWS + lane] = end - in_row;
-    if lane == WORKGROUP - 1u {
-        first_of_tile = atomicAdd(&counter, end);
-    }
-    lists[list].start = workgroupUniformLoad(&first_of_tile) + rank;
 }

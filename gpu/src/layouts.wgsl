@@ -175,7 +175,7 @@ fn rank_lists(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let own = entries_of(chunk_of(group, groups) * WORKGROUP + lane);
-    sort_lists(own.x, own.y, lane);
+    sort_lists(Run(own.x, own.y), lane);
 }
 
 // The longest lists: runs in order; one entry.

@@ -175,7 +175,7 @@ fn layers_sort(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let run = run_of(chunk_of(group, groups) * WORKGROUP + lane, told.items);
-    sort_lists(run.x, run.y, lane);
+    sort_lists(Run(run.x, run.y), lane);
 }
 
 // The longest lists: runs in order; one key.

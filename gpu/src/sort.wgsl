@@ -3,6 +3,7 @@
 // Imported where there is a counter `unfinished`, and with what is listed: its order, `less`, and
 // `LAST`, which nothing is behind.
 //#import item
+//#import run
 //#import runs
 
 // Entries, with runs twice as long in order.
@@ -18,29 +19,24 @@ const LONG: u32 = 512u;
 const RUN: u32 = 64u;
 
 // Of 64 lists, those that a workgroup sorts one after another.
-struct Long {
-    start: u32,
-    length: u32,
-}
-
-var<workgroup> longs: array<Long, 64>;
+var<workgroup> longs: array<Run, 64>;
 var<workgroup> all_longs: atomic<u32>;
 var<workgroup> number_of_longs: u32;
 var<workgroup> own_values: array<Listed, LONG>;
 
 // A list for each invocation of a workgroup, all of which come along. The length of what is too
 // long goes to `unfinished`.
-fn sort_lists(start: u32, length: u32, lane: u32) {
+fn sort_lists(run: Run, lane: u32) {
     if lane == 0u {
         atomicStore(&all_longs, 0u);
     }
     workgroupBarrier();
-    if length > LONG {
-        atomicMax(&unfinished, length);
-    } else if length > SHORT {
-        longs[atomicAdd(&all_longs, 1u)] = Long(start, length);
+    if run.length > LONG {
+        atomicMax(&unfinished, run.length);
+    } else if run.length > SHORT {
+        longs[atomicAdd(&all_longs, 1u)] = run;
     } else {
-        sort_short(start, start + length);
+        sort_short(run);
     }
     workgroupBarrier();
     if lane == 0u {
@@ -48,30 +44,29 @@ fn sort_lists(start: u32, length: u32, lane: u32) {
     }
     let count = workgroupUniformLoad(&number_of_longs);
     for (var i = 0u; i < count; i += 1u) {
-        let long = workgroupUniformLoad(&longs[i]);
-        sort_long(long.start, long.length, lane);
+        sort_long(workgroupUniformLoad(&longs[i]), lane);
     }
 }
 
-fn sort_short(start: u32, end: u32) {
-    for (var i = start + 1u; i < end; i += 1u) {
-        let value = listed[i];
+fn sort_short(run: Run) {
+    for (var i = 1u; i < run.length; i += 1u) {
+        let value = listed[slot(run, i)];
         var at = i;
-        while at > start && less(value, listed[at - 1u]) {
-            listed[at] = listed[at - 1u];
+        while at > 0u && less(value, listed[slot(run, at - 1u)]) {
+            listed[slot(run, at)] = listed[slot(run, at - 1u)];
             at -= 1u;
         }
-        listed[at] = value;
+        listed[slot(run, at)] = value;
     }
 }
 
-fn sort_long(start: u32, length: u32, lane: u32) {
-    for (var i = lane; i < length; i += WORKGROUP) {
-        own_values[i] = listed[start + i];
+fn sort_long(run: Run, lane: u32) {
+    for (var i = lane; i < run.length; i += WORKGROUP) {
+        own_values[i] = listed[slot(run, i)];
     }
-    sort_values(length, lane);
-    for (var i = lane; i < length; i += WORKGROUP) {
-        listed[start + i] = own_values[i];
+    sort_values(run.length, lane);
+    for (var i = lane; i < run.length; i += WORKGROUP) {
+        listed[slot(run, i)] = own_values[i];
     }
     workgroupBarrier();
 }

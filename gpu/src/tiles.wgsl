@@ -3,6 +3,7 @@
 //
 // Bins and lists are counted, filled and sorted in passes of their own, and read in later ones. Lists of
 // a tile are written by one workgroup, each of their words once in a pass.
+//#import jagged_run for run
 //#import entry
 //#import bin
 //#import scan
@@ -146,9 +147,9 @@ fn shade_sort(
     if !has_lists(tile) {
         return;
     }
-    let run = run_at(tile, lane);
-    let is_left = run.row == CONTIGUOUS && !run.in_order;
-    sort_lists(run.start, select(0u, run.length, is_left), lane);
+    var run = run_at(tile, lane);
+    run.length = select(0u, run.length, kernel_of_run(run) == IN_MEMORY);
+    sort_lists(run, lane);
 }
 
 // The longest lists: runs in order; one entry. Of a list, `groups` workgroups take all entries.
@@ -185,7 +186,7 @@ fn shade_ordered(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel != NOWHERE && own.run.in_order && own.run.length <= AT_ONCE {
+    if own.pixel != NOWHERE && kernel_of_run(own.run) == AS_IT_IS {
         show(own.pixel, shaded(own));
     }
 }
@@ -202,7 +203,7 @@ fn shade_long(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let own = pixel_at(chunk_of(group, groups), lane);
-    if own.pixel == NOWHERE || kernel_of(own.run, own.run.length, own.run.in_order) != 4u {
+    if own.pixel == NOWHERE || kernel_of_run(own.run) != IN_MEMORY {
         return;
     }
     let length = min(own.run.length, tiled.layers);
@@ -215,7 +216,7 @@ fn shade_long(
     }
     let last = min(length, tiled.first + tiled.count);
     for (var i = tiled.first; i < last; i += 1u) {
-        let entry = listed[own.run.start + i];
+        let entry = listed[slot(own.run, i)];
         if is_hidden(entry.x, own.behind) {
             break;
         }

@@ -32,7 +32,7 @@ pub const LISTS: u32 = SIDE * SIDE;
 
 /// Entries of the longest list of a tile whose lists lie in rows; a tile with a longer one keeps its
 /// lists one after another.
-pub const ROWS: u32 = 64;
+pub const ROWS: u32 = 512;
 
 /// Which triangles each tile of some rows of the target may hold. Tiles begin at the first of the rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,9 +83,9 @@ pub struct List {
 pub struct Jagged {
     /// The lists.
     pub lists: Vec<List>,
-    /// Of each tile, how many entries lie in rows before each of [`ROWS`]: entry `i` of a list is at
-    /// `start + rows[ROWS * tile + i]`. `None` where it is at `start + i`.
-    pub rows: Vec<Option<[u32; ROWS as usize]>>,
+    /// Of each tile, how many entries lie before each of its rows, of which it has at most [`ROWS`]: entry
+    /// `i` of a list is at `start + rows[i]`. `None` where it is at `start + i`.
+    pub rows: Vec<Option<Vec<u32>>>,
     /// Depth key and [`packed`] triangle of each fragment.
     pub entries: Vec<[u32; 2]>,
 }
@@ -255,8 +255,9 @@ fn place(jagged: &mut Jagged, lists: &[Vec<[u32; 2]>]) {
     };
     jagged.lists.extend((0..lists.len()).map(placed));
     let before = |row: usize| lists.iter().map(|list| word(list.len().min(row))).sum();
-    jagged.rows.push(Some(std::array::from_fn(before)));
-    for row in 0..longest as usize {
+    let all = 0..longest as usize;
+    jagged.rows.push(Some(all.clone().map(before).collect()));
+    for row in all {
         let entries = order.iter().filter_map(|list| lists[*list].get(row));
         jagged.entries.extend(entries);
     }

@@ -87,7 +87,9 @@ pub(super) fn at_once(options: &Options<'_>, rasterizer: &Rasterizer<'_>) -> u32
 pub(super) fn bins(room: &mut Room<'_, '_>) -> Result<Option<(Vec<u32>, Duration)>, GpuError> {
     let (bins, time) = count_bins(room)?;
     let binned = bins.last().copied().unwrap_or(0);
-    if binned > BINNED_MAX || 4 * u64::from(binned) > room.rasterizer.gpu.binding_limit() {
+    if binned > BINNED_MAX
+        || 4 * u64::from(room.tiles + binned) > room.rasterizer.gpu.binding_limit()
+    {
         return Ok(None);
     }
     let filled = fill_bins(room, binned)?;
@@ -158,7 +160,8 @@ pub(super) fn jagged(
     let rasterizer = room.rasterizer;
     let gpu = rasterizer.gpu;
     let mut times = Times::default();
-    times.jagged += submit(room, &room.place_lists(drawn)?)?;
+    let place = room.place_lists(drawn)?;
+    times.jagged += submit(room, &place)?;
     let needed = gpu.word(room.buffers.get("counter"), 0)?;
     if needed > capacity {
         return Ok(Tried::Needs(needed));
@@ -167,11 +170,12 @@ pub(super) fn jagged(
     room.buffers.set("listed", entries()?);
     times.jagged += submit(room, &room.drawn("jagged_fill", needed, drawn)?)?;
     let longest = room.longest(needed)?;
-    if longest.has_unsorted() {
+    if longest.is_merged() {
         room.buffers.set("merged", entries()?);
     }
     let lists: Vec<rows::List> = gpu.read(room.buffers.get("lists"), room.lists as usize)?;
-    let moved: Vec<u32> = gpu.read(room.buffers.get("rows"), room.lists as usize)?;
+    let words = room.buffers.get("rows").size() / 4;
+    let moved: Vec<u32> = gpu.read(room.buffers.get("rows"), words as usize)?;
     let linked = |room: &Room<'_, '_>| -> Result<Lists, GpuError> {
         let entries: Vec<[u32; 2]> = gpu.read(room.buffers.get("listed"), needed as usize)?;
         let size = (rasterizer.size.width, band);

@@ -28,11 +28,21 @@ impl Longest {
     pub(super) fn has_unsorted(&self) -> bool {
         self.kernels & SORTED != 0
     }
+
+    /// Whether any is too long for a workgroup, which merges its parts.
+    pub(super) fn is_merged(&self) -> bool {
+        self.has_unsorted() && self.count > 0
+    }
 }
 
 impl Room<'_, '_> {
     /// Counts the fragments of each list, and says where they will be.
-    pub(super) fn place_lists(&self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
+    pub(super) fn place_lists(&mut self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
+        let words = u64::from(self.tiles) + self.buffers.get("binned").size() / 4;
+        let rows = self
+            .pool
+            .storage(self.rasterizer.gpu, "rows of tiles", 4 * words)?;
+        self.buffers.set("rows", rows);
         let mut passes = self.drawn("jagged_count", 0, bins)?;
         let place = self.pass("jagged_place", self.of_tiles(), self.tiles)?;
         let place = place.after_clearing(self.buffers.get("counter").clone());

@@ -21,7 +21,7 @@ const GROUPS: u32 = 2048;
 /// Iterations of a workgroup over large triangles, at most: llvmpipe ends loops after 65,535.
 const SHARED: u64 = 1 << 15;
 
-/// Of a sample: opaque surface, picture. Of a pixel: list, offset of a row, longest lists. Of a fragment:
+/// Of a sample: opaque surface, picture. Of a pixel: list, longest lists. Of a fragment:
 /// an entry, and one more while long lists are put in order.
 pub(super) fn need(rasterizer: &Rasterizer<'_>) -> Need {
     let samples = u64::from(rasterizer.samples.count());
@@ -32,7 +32,7 @@ pub(super) fn need(rasterizer: &Rasterizer<'_>) -> Need {
     let rows = binding / row / side * side;
     Need {
         what: "jagged",
-        pixel: SAMPLE * samples + LIST + 2 * 4,
+        pixel: SAMPLE * samples + LIST + 4,
         node: 16,
         pixels_max: (binding / (COLOUR * samples)).min(rows * u64::from(rasterizer.size.width)),
     }
@@ -90,11 +90,11 @@ impl<'r, 'g> Room<'r, 'g> {
             ("bins", words("offsets of tiles", tiles + 1)?),
             ("sums", words("sums of parts", tiles.div_ceil(TILE))?),
             ("larges", words("large triangles", rasterizer.prims() + 1)?),
-            // Both are made anew once it is known how many there are.
+            // These are made anew once it is known how many there are.
             ("binned", words("triangles in tiles", 0)?),
+            ("rows", words("rows of tiles", 0)?),
             ("listed", words("entries of lists", 0)?),
             ("lists", bytes("lists", LIST * u64::from(lists))?),
-            ("rows", words("rows of tiles", lists)?),
             ("longest", words("longest lists", lists + 3)?),
             ("counter", words("counter", 1)?),
             ("unfinished", words("unfinished", 1)?),

@@ -62,7 +62,10 @@ pub(super) fn of_rows(
         let tile = y / SIDE * across + x / SIDE;
         let list = lists[(tile * WORKGROUP + y % SIDE * SIDE + x % SIDE) as usize];
         let slot = |i: u32| match list.start & CONTIGUOUS {
-            0 => list.start.wrapping_add(rows[(tile * ROWS + i) as usize]),
+            0 => {
+                let row = rows.get(rows[tile as usize].wrapping_add(i) as usize);
+                list.start.wrapping_add(row.copied().unwrap_or(EOL))
+            }
             _ => (list.start & !CONTIGUOUS).wrapping_add(i),
         };
         let most = match list.start & CONTIGUOUS {

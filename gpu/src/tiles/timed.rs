@@ -174,9 +174,11 @@ impl<'r, 'g> Timed<'r, 'g> {
         let longest = room.longest(fragments)?;
         let spans = &mut self.spans;
         spans.extend([(Span::Place, place), (Span::Fill, fill)]);
-        if longest.has_unsorted() {
+        if longest.is_merged() {
             let merged = room.pool.storage(gpu, "entries that are merged", bytes)?;
             room.buffers.set("merged", merged);
+        }
+        if longest.has_unsorted() {
             spans.push((Span::Sort, room.sort_lists(longest)?));
         }
         for n in layers {

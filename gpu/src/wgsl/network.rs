@@ -15,23 +15,16 @@ pub const SIZES: [u32; 4] = [8, 16, 32, 64];
 /// registers: these are written back and read again, one after another.
 pub(super) fn text(has_samples: bool) -> String {
     let mut text = String::from("// Lists of a few entries, sorted in registers and blended.\n");
-    let mut smaller = 0;
-    for size in SIZES {
+    for (number, size) in SIZES.into_iter().enumerate() {
         let written =
-            shaded(&mut text, size, has_samples).and_then(|()| entry(&mut text, smaller, size));
+            shaded(&mut text, size, has_samples).and_then(|()| entry(&mut text, number, size));
         written.expect("a string takes all that is written");
-        smaller = size;
     }
     text
 }
 
-/// The kernel of stage shade that takes lists of more entries than the next smaller size has; the
-/// smallest takes empty ones as well.
-fn entry(text: &mut String, smaller: u32, size: u32) -> std::fmt::Result {
-    let more = match smaller {
-        0 => String::new(),
-        n => format!(" && own.run.length > {n}u"),
-    };
+/// A kernel of stage shade, which has this number in `kernel_of`.
+fn entry(text: &mut String, number: usize, size: u32) -> std::fmt::Result {
     write!(
         text,
         "
@@ -42,8 +35,7 @@ fn shade_{size}(
     @builtin(local_invocation_index) lane: u32,
 ) {{
     let own = pixel_at(chunk_of(group, groups), lane);
-    let in_rows = own.pixel != NOWHERE && own.run.row != CONTIGUOUS;
-    if in_rows && !own.run.in_order && own.run.length <= {size}u{more} {{
+    if own.pixel != NOWHERE && kernel_of_run(own.run) == {number}u {{
         show(own.pixel, shaded_{size}(own));
     }}
 }}
