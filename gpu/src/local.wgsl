@@ -115,35 +115,48 @@ fn take_nearest(own: ptr<function, Pixel>) -> Listed {
     return nearest;
 }
 
+// One that lies behind all that wait, as most do.
+fn put_last(own: ptr<function, Pixel>, entry: Listed) {
+    let p = (*own).held;
+    (*own).held.a = p.b;
+    (*own).held.b = p.c;
+    (*own).held.c = p.d;
+    (*own).held.d = p.e;
+    (*own).held.e = p.f;
+    (*own).held.f = p.g;
+    (*own).held.g = p.h;
+    (*own).held.h = entry;
+    if (*own).count >= WINDOW {
+        blend(own, p.a);
+    }
+    (*own).count += 1u;
+}
+
 fn put(own: ptr<function, Pixel>, entry: Listed, fill: bool) {
     let p = (*own).held;
-    var nearest: Listed;
     if less(p.h, entry) {
-        // It lies behind all that wait, as most do.
-        nearest = take_nearest(own);
-        (*own).held.h = entry;
-    } else {
-        // It goes to its place from the far end; the nearest of nine comes out.
-        let h = pair(p.h, entry);
-        let g = pair(p.g, h.nearer);
-        let f = pair(p.f, g.nearer);
-        let e = pair(p.e, f.nearer);
-        let d = pair(p.d, e.nearer);
-        let c = pair(p.c, d.nearer);
-        let b = pair(p.b, c.nearer);
-        let a = pair(p.a, b.nearer);
-        (*own).held.a = a.farther;
-        (*own).held.b = b.farther;
-        (*own).held.c = c.farther;
-        (*own).held.d = d.farther;
-        (*own).held.e = e.farther;
-        (*own).held.f = f.farther;
-        (*own).held.g = g.farther;
-        (*own).held.h = h.farther;
-        nearest = a.nearer;
+        put_last(own, entry);
+        return;
     }
+    // It goes to its place from the far end; the nearest of nine comes out.
+    let h = pair(p.h, entry);
+    let g = pair(p.g, h.nearer);
+    let f = pair(p.f, g.nearer);
+    let e = pair(p.e, f.nearer);
+    let d = pair(p.d, e.nearer);
+    let c = pair(p.c, d.nearer);
+    let b = pair(p.b, c.nearer);
+    let a = pair(p.a, b.nearer);
+    (*own).held.a = a.farther;
+    (*own).held.b = b.farther;
+    (*own).held.c = c.farther;
+    (*own).held.d = d.farther;
+    (*own).held.e = e.farther;
+    (*own).held.f = f.farther;
+    (*own).held.g = g.farther;
+    (*own).held.h = h.farther;
     if (*own).count >= WINDOW {
-        blend(own, nearest);
+        blend(own, a.nearer);
     }
     (*own).count += 1u;
 }

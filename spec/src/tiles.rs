@@ -32,7 +32,7 @@ pub const LISTS: u32 = SIDE * SIDE;
 
 /// Entries of the longest list of a tile whose lists lie in rows; a tile with a longer one keeps its
 /// lists one after another.
-pub const ROWS: u32 = 512;
+pub const ROWS: u32 = 256;
 
 /// Which triangles each tile of some rows of the target may hold. Tiles begin at the first of the rows.
 #[derive(Clone, Debug, PartialEq, Eq)]

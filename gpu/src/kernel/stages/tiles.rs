@@ -32,7 +32,7 @@ pub(super) const JAGGED: Stage = Stage {
     contract: "A workgroup for each tile of tiled.items: counts the fragments of each pixel from \
         the triangles tiled.first of its bin on, tiled.count of them; places the lists as jagged \
         diagonals; fills them with key and triangle, and marks those that came in order. Lists of more \
-        than 512 lie one after another.",
+        than 256 lie one after another.",
 };
 
 /// Lists in order, and blended.
