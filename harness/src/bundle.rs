@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::{env, fs, io};
 
+use crate::bench::paper;
 use crate::corpus::{self, Entry, FINDINGS};
 use crate::embree;
 use crate::error::InputError;
 use crate::mesh::Intake;
-use crate::scene::{self, LoadError};
+use crate::scene::{self, LoadError, Loaded};
 
 /// Starts the program beside it, with everything that it looks for beside it.
 const RUN: &str = r#"#!/bin/sh
@@ -36,12 +37,13 @@ pub struct Bundled {
     pub remarks: Vec<String>,
 }
 
-/// Packs this program and some scenes into a new folder.
+/// Packs this program and some scenes into a new folder; if they are `all`, what `bench` reads beside
+/// them, too.
 ///
 /// # Errors
 /// A folder that is there already and not empty, a scene that does not load, an Embree
 /// whose file the system does not tell, whatever the system says.
-pub fn bundle(to: &Path, scenes: &[Entry]) -> Result<Bundled, InputError> {
+pub fn bundle(to: &Path, scenes: &[Entry], all: bool) -> Result<Bundled, InputError> {
     let fail = |e: io::Error| InputError::new(to, format!("cannot be written: {e}"));
     if fs::read_dir(to).is_ok_and(|mut inside| inside.next().is_some()) {
         return Err(InputError::new(to, "is not empty; name a new folder"));
@@ -60,7 +62,10 @@ pub fn bundle(to: &Path, scenes: &[Entry]) -> Result<Bundled, InputError> {
                 .map_err(fail)?;
         }
         for entry in scenes {
-            packer.scene(entry)?;
+            packer.scene(&entry.name, |intake| scene::load_from(intake, entry, None))?;
+        }
+        for measured in paper::SCENES.iter().filter(|_| all) {
+            packer.scene(measured.name, |intake| measured.load_from(intake))?;
         }
         packer.findings()?;
         let lock = corpus::root().join("meshes.lock");
@@ -138,13 +143,17 @@ impl Packer<'_> {
 
     /// A scene's folder, and the packages' meshes that it reads. A scene whose package
     /// is not there is left out, and said to be.
-    fn scene(&mut self, entry: &Entry) -> Result<(), InputError> {
+    fn scene(
+        &mut self,
+        name: &str,
+        load: impl FnOnce(&mut Intake) -> Result<Loaded, LoadError>,
+    ) -> Result<(), InputError> {
         let mut intake = Intake::from_disk();
-        match scene::load_from(&mut intake, entry, None) {
+        match load(&mut intake) {
             Ok(_) => {}
             Err(LoadError::Input(error)) => return Err(error),
             Err(missing) => {
-                self.remark(format!("{} is left out: {missing}", entry.name));
+                self.remark(format!("{name} is left out: {missing}"));
                 return Ok(());
             }
         }

@@ -1,6 +1,7 @@
 //! `add` and `bundle`: what a contributor brings in, and takes elsewhere.
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use super::{PACKAGED, Place, Ran, SCENE, repository};
@@ -228,6 +229,11 @@ fn a_bundle_runs_without_an_environment() {
     let page = page.expect("the report is beside it");
     let again = format!("{} replay --exact", out.join("run").display());
     assert!(page.contains(&again), "commands that work there");
+    place.run(&["bundle", "all"]).expect(0);
+    let stand_in = "native/meshes/dragon-res3.ply.gz";
+    let has = |bundle: &Path| bundle.join(stand_in).is_file();
+    let all = [out.as_path(), &place.root.join("all")].map(has);
+    assert_eq!(all, [false, true], "what bench reads goes with all scenes");
     let full = place.run(&["bundle", "full"]).expect(2).stderr;
     assert!(
         full.contains("full: is not empty; name a new folder"),

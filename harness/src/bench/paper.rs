@@ -144,12 +144,20 @@ impl Scene {
     /// # Errors
     /// A mesh that is not there.
     pub fn load(&self) -> Result<Loaded, LoadError> {
+        self.load_from(&mut Intake::from_disk())
+    }
+
+    /// The same, which leaves on record what it read.
+    ///
+    /// # Errors
+    /// A mesh that is not there.
+    pub fn load_from(&self, intake: &mut Intake) -> Result<Loaded, LoadError> {
         let path = PathBuf::from(format!("harness/src/bench/{}.toml", self.name));
         let entry = Entry {
             name: self.name.to_owned(),
             ..Entry::outside(&path)
         };
-        load_text(&mut Intake::from_disk(), &entry, None, self.text)
+        load_text(intake, &entry, None, self.text)
     }
 
     /// What is asked of it, unless otherwise by the user.

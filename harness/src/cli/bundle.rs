@@ -11,7 +11,7 @@ use crate::{corpus, text};
 
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  \
-    triptych bundle /tmp/triptych                 the whole corpus\n  \
+    triptych bundle /tmp/triptych                 the whole corpus, and what bench reads beside\n  \
     triptych bundle /tmp/triptych raster/ bunny   some scenes\n\n\
     The other machine needs a C library as new as this one's, Vulkan's loader and a driver. \
     There, DIR/run replays everything; DIR/run COMMAND does what `triptych COMMAND` does here, \
@@ -27,7 +27,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let entries = corpus::list(&corpus::root())?;
     let scenes = args.scenes.select(&entries)?;
-    let bundled = bundle(&args.to, &scenes)?;
+    let bundled = bundle(&args.to, &scenes, scenes.len() == entries.len())?;
     bundled.remarks.iter().for_each(complain);
     let bytes: u64 = bundled.files.iter().map(|(_, bytes)| bytes).sum();
     writeln!(
