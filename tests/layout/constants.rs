@@ -8,7 +8,8 @@ use triptych_gpu::layouts::{BEGINS, ENDS, FOLLOWS, GOES_ON, SAMPLED};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
 use triptych_gpu::raster::SATURATED;
-use triptych_gpu::tiles::{CONTIGUOUS, FINISHED, IN_ORDER};
+use triptych_gpu::tiles::{AS_IT_IS, CONTIGUOUS, FINISHED, IN_MEMORY, IN_ORDER};
+use triptych_gpu::wgsl::network::SIZES;
 use triptych_spec::abuffer::{EOL, NOTHING};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
@@ -61,6 +62,10 @@ fn constants_are_those_of_rust() {
         ("WEIGHT_BITS", i64::from(WEIGHT_BITS)),
         ("SIDE", i64::from(SIDE)),
         ("ROWS", i64::from(ROWS)),
+        ("IN_REGISTERS", i64::from(SIZES[3])),
+        // Networks have the numbers of their sizes.
+        ("IN_MEMORY", i64::from(IN_MEMORY)),
+        ("AS_IT_IS", i64::from(AS_IT_IS)),
         ("CONTIGUOUS", i64::from(CONTIGUOUS)),
         ("IN_ORDER", i64::from(IN_ORDER)),
         ("FINISHED", i64::from(FINISHED)),

@@ -10,7 +10,7 @@ mod peels;
 mod reduced;
 mod targets;
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use triptych_spec::abuffer::{Lists, Node, Opaque, Sorted};
 
@@ -152,16 +152,18 @@ fn run_through<'p>(
     passes: impl Iterator<Item = &'p Ready>,
     unfinished: &wgpu::Buffer,
     stage: &'static str,
-) -> Result<(), GpuError> {
+) -> Result<Duration, GpuError> {
     let gpu = rasterizer.gpu;
     let mut encoder = gpu.encoder();
     for pass in passes {
         encoder.clear_buffer(unfinished, 0, None);
         rasterizer.record(std::slice::from_ref(pass), &mut encoder);
     }
+    let start = Instant::now();
     gpu.submit(encoder)?;
+    let time = start.elapsed();
     match gpu.word(unfinished, 0)? {
-        0 => Ok(()),
+        0 => Ok(time),
         _ => Err(GpuError::Endless {
             adapter: gpu.name.clone(),
             stage,

@@ -147,6 +147,7 @@ pub(super) fn fill_bins(room: &mut Room<'_, '_>, binned: u32) -> Result<Duration
     let gpu = room.rasterizer.gpu;
     let bins = room.pool.storage(gpu, "triangles in tiles", bytes)?;
     room.buffers.set("binned", bins);
+    room.binned = binned;
     submit(room, &room.fill_bins(binned)?)
 }
 

@@ -32,7 +32,8 @@ impl Way {
     fn need(self, rasterizer: &Rasterizer<'_>) -> Need {
         let runs = room::need(rasterizer);
         match self {
-            Self::Runs => runs,
+            // If lists are merged turns out as they are filled.
+            Self::Runs => Need { node: 8, ..runs },
             Self::Linked => linked::need(rasterizer),
             Self::Local => Need {
                 pixel: runs.pixel + DIGEST,
@@ -154,6 +155,11 @@ impl<'r, 'g> Banded<'r, 'g> {
     /// Triangles in bins.
     pub fn binned(&self) -> u64 {
         self.sum(|timed| timed.binned)
+    }
+
+    /// Whether lists of any band are so long that they are merged, from one array into another.
+    pub fn merges(&self) -> bool {
+        self.bands.iter().any(|timed| timed.merges)
     }
 
     /// Fragments in lists.

@@ -17,16 +17,26 @@ const ENTRIES: [(u32, &str); 5] = [
     (1, "shade_16"),
     (2, "shade_32"),
     (3, "shade_64"),
-    (5, "shade_ordered"),
+    (AS_IT_IS, "shade_ordered"),
 ];
 
-/// The bit of lists that are sorted in memory.
-const SORTED: u32 = 1 << 4;
+/// The bit of lists that are sorted in memory, and blended by `shade_long`. Twin: `IN_MEMORY` in
+/// `jagged.wgsl`.
+pub const IN_MEMORY: u32 = 4;
+
+/// That of lists that are blended as they are. Twin: `AS_IT_IS` in `jagged.wgsl`.
+pub const AS_IT_IS: u32 = 5;
 
 impl Longest {
     /// Whether any list is sorted in memory.
     pub(super) fn has_unsorted(&self) -> bool {
-        self.kernels & SORTED != 0
+        self.kernels >> IN_MEMORY & 1 == 1
+    }
+
+    /// The same lists, filled in any order: for frames whose bins are in another each time.
+    pub(super) fn in_any_order(self) -> Self {
+        let kernels = ((1 << (IN_MEMORY + 1)) - 1) | (1 << AS_IT_IS);
+        Self { kernels, ..self }
     }
 
     /// Whether any is too long for a workgroup, which merges its parts.
@@ -38,7 +48,7 @@ impl Longest {
 impl Room<'_, '_> {
     /// Counts the fragments of each list, and says where they will be.
     pub(super) fn place_lists(&mut self, bins: (u32, u32)) -> Result<Vec<Ready>, GpuError> {
-        let words = u64::from(self.tiles) + self.buffers.get("binned").size() / 4;
+        let words = u64::from(self.tiles) + u64::from(self.binned);
         let rows = self
             .pool
             .storage(self.rasterizer.gpu, "rows of tiles", 4 * words)?;
@@ -57,7 +67,7 @@ impl Room<'_, '_> {
         }
     }
 
-    /// Puts lists that are too long for registers in order.
+    /// Puts lists that no network sorts in order.
     pub(super) fn sort_lists(&mut self, longest: Longest) -> Result<Vec<Ready>, GpuError> {
         let Longest { length, count, .. } = longest;
         let mut passes = Vec::new();
@@ -65,6 +75,9 @@ impl Room<'_, '_> {
             return Ok(passes);
         }
         passes.push(self.pass("shade_sort", self.of_tiles(), self.tiles)?);
+        if !longest.is_merged() {
+            return Ok(passes);
+        }
         let groups = length.div_ceil(WORKGROUP);
         let needed = u64::from(groups) * u64::from(count);
         let all = u32::try_from(needed).ok().filter(|all| *all <= GROUPS_MAX);

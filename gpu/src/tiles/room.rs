@@ -50,7 +50,7 @@ pub(super) const SAMPLE: u64 = 2 * 4 + COLOUR;
 pub(super) struct Longest {
     /// Entries of the longest.
     pub(super) length: u32,
-    /// Which kernels of stage shade have any, a bit for each of [`ENTRIES`].
+    /// Which kernels of stage shade have any, a bit each.
     pub(super) kernels: u32,
     /// How many are longer than a workgroup sorts.
     pub(super) count: u32,
@@ -64,6 +64,8 @@ pub(super) struct Room<'r, 'g> {
     pub(super) tiles: u32,
     /// Lists of the band.
     pub(super) lists: u32,
+    /// Triangles in bins, once they are filled.
+    pub(super) binned: u32,
     /// All buffers by the names of variables.
     pub(super) buffers: Named,
     /// Where most of them come from.
@@ -108,6 +110,7 @@ impl<'r, 'g> Room<'r, 'g> {
             frame,
             tiles,
             lists,
+            binned: 0,
             buffers: buffers.into(),
             pool,
         })

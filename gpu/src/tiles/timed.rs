@@ -1,5 +1,7 @@
 //! A band drawn over and over, each part timed.
 
+use triptych_spec::tiles::BIN_SORTED;
+
 use super::attempt::BINNED_MAX;
 use super::pool::Pool;
 use super::room::Room;
@@ -19,7 +21,7 @@ pub enum Span {
     Place,
     /// Lists filled.
     Fill,
-    /// Lists that are too long for registers, sorted.
+    /// Lists that no network sorts, sorted. Bins that are not put in order may leave some in any frame.
     Sort,
     /// The picture of so many nearest layers; short lists are sorted for it.
     Shade(u32),
@@ -37,6 +39,8 @@ pub(super) struct Timed<'r, 'g> {
     pub(super) fragments: u32,
     /// Tiles that [`Self::local`] left to lists; lists that [`Self::linked`] has to sort.
     pub(super) left: u32,
+    /// Whether there is a second array, into which parts of lists are merged.
+    pub(super) merges: bool,
 }
 
 impl<'r, 'g> Timed<'r, 'g> {
@@ -112,7 +116,7 @@ impl<'r, 'g> Timed<'r, 'g> {
         timed.left = regions.iter().map(Region::unordered).sum();
         // A list is no longer than its region.
         let longest = regions.iter().map(|r| r.attempts).max().unwrap_or(0);
-        if timed.left > 0 {
+        if timed.left > 0 || drawn.0 > BIN_SORTED {
             timed
                 .spans
                 .push((Span::Sort, room.sort_linked_whole(longest)?));
@@ -155,6 +159,7 @@ impl<'r, 'g> Timed<'r, 'g> {
             binned,
             fragments: 0,
             left: 0,
+            merges: false,
         };
         Ok((timed, drawn))
     }
@@ -171,10 +176,14 @@ impl<'r, 'g> Timed<'r, 'g> {
         room.buffers.set("listed", listed);
         let fill = room.drawn("jagged_fill", fragments, drawn)?;
         attempt::submit(room, &fill)?;
-        let longest = room.longest(fragments)?;
+        let mut longest = room.longest(fragments)?;
+        if drawn.0 > BIN_SORTED {
+            longest = longest.in_any_order();
+        }
         let spans = &mut self.spans;
         spans.extend([(Span::Place, place), (Span::Fill, fill)]);
-        if longest.is_merged() {
+        self.merges = longest.is_merged();
+        if self.merges {
             let merged = room.pool.storage(gpu, "entries that are merged", bytes)?;
             room.buffers.set("merged", merged);
         }

@@ -3,7 +3,8 @@
 //! With `P` pixels, `F` fragments in lists, `C` transparent fragments before the depth
 //! test, `O` opaque fragments on `Q` pixels, `T` transparent and `U` opaque triangles,
 //! `S(n)` layers shown (the sum over pixels of `min(n, layers)`), and `M` the sum over
-//! lists of `length * ceil(log2 length)`; buffers as in `gpu/src/abuffer.wgsl`, each
+//! lists of `length * ceil(log2 length)`, and `R` what tells of the rows of tiles: one word of each, and one
+//! for each entry of its longest list; buffers as in `gpu/src/abuffer.wgsl`, each
 //! word counted once for each time that a kernel has to read or write it, and what belongs to a triangle
 //! once a kernel, however many read it, as a cache may hold it; `H(n)` is the least of `S(n)` and `T`:
 //!
@@ -18,9 +19,10 @@
 //! | resolve: the same with progress and the picture so far | `140 P + 32 S(all)` | |
 //!
 //! | bin, by tiles: triangle and its face twice, the face of opaque ones as well; its number in `B` bins | `72 T + 32 (T + U) + 4 B` | `2 B` |
-//! | place: number and triangle, opaque key; length written; list read and placed, row | `36 T + 4 B + 44 P` | |
-//! | fill: number and triangle, opaque key; list, row, how far it is filled; entry of `E` bytes | `36 T + 4 B + 32 P + E F` | |
-//! | shade: list, row, surface, picture; entries and colours shown | `40 P + E S(n) + 16 H(n)` | |
+//! | place: number and triangle, opaque key; length written; list read and placed; rows | `36 T + 4 B + 40 P + 4 R` | |
+//! | fill: number and triangle, opaque key; list, how far it is filled; rows; entry of `E` bytes | `36 T + 4 B + 28 P + 4 R + E F` | |
+//! | shade: list, surface, picture; rows; entries and colours shown | `36 P + 4 R + E S(n) + 16 H(n)` | |
+//! | of linked lists, in place of rows: a word of a pixel in fill and in shade | `4 P` for `4 R` | |
 //! | others, each time: triangle with colour, keys, picture; then surface, picture | `60 T + 12 C + 16 P`; `24 P` | |
 //!
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
@@ -50,6 +52,8 @@ pub struct Counts {
     opaque: u64,
     /// How many lists there are of each length.
     lengths: Vec<u64>,
+    /// Words that tell where rows of a tile are: one, and one more for each entry of its longest list.
+    rows: u64,
 }
 
 /// Bytes and atomics.
@@ -97,6 +101,10 @@ impl Counts {
             transparent: triangles - opaque_triangles,
             opaque: opaque_triangles,
             lengths,
+            rows: counted::rows(
+                &run.sorted.lengths().collect::<Vec<_>>(),
+                run.primitives.size,
+            ),
         }
     }
 
@@ -155,9 +163,13 @@ impl Counts {
         let (p, triangles) = (self.pixels, self.transparent + self.opaque);
         let bin = 2 * (36 * self.transparent + 16 * triangles) + 4 * binned;
         let drawn = 36 * self.transparent + 4 * binned;
-        let place = counted * (drawn + 4 * p + 12 * p + 28 * p);
-        let fill = drawn + 4 * p + 28 * p + entry * self.fragments;
-        let shade = 16 * p + entry * self.shown(layers) + 24 * p + 16 * self.faces(layers);
+        let told = match method {
+            Method::Tiles => 4 * self.rows,
+            _ => 4 * p,
+        };
+        let place = counted * (drawn + 4 * p + 12 * p + 24 * p + told);
+        let fill = drawn + 4 * p + 24 * p + told + entry * self.fragments;
+        let shade = 12 * p + told + entry * self.shown(layers) + 24 * p + 16 * self.faces(layers);
         Work {
             bytes: bin + place + fill + shade,
             atomics: 2 * binned,
@@ -203,6 +215,7 @@ mod tests {
             transparent: 2,
             opaque: 1,
             lengths: vec![2, 1, 0, 0, 0, 2],
+            rows: 6,
         }
     }
 
@@ -222,7 +235,8 @@ mod tests {
         assert_eq!(work(Part::Resolve), must(700 + 352, 0));
         // Two layers of eleven fragments are five, of no more than two triangles.
         let drawn = 36 * 2 + 4 * 7;
-        let tiles = 2 * (36 * 2 + 16 * 3) + 4 * 7 + 2 * drawn + 116 * 5 + 8 * 11 + 8 * 5 + 16 * 2;
+        let tiles = 2 * (36 * 2 + 16 * 3) + 4 * 7 + 2 * drawn + 8 * 11 + 8 * 5 + 16 * 2;
+        let tiles = tiles + 104 * 5 + 12 * 6;
         assert_eq!(counts.by_tiles(7, 2, Method::Tiles), must(tiles, 14));
         assert_eq!(counts.longest(), 5);
         assert_eq!(counts.gone_through(3), must(3 * (120 + 144 + 80) + 120, 0));

@@ -5,10 +5,14 @@ use super::{AWAKE, Bench, Machine, WARM_UP, WARM_UP_WORK, paper};
 use crate::text::markdown as text;
 
 impl Bench {
-    /// The stem of the page and of what lies beside it: family, date and machine.
+    /// The stem of the page and of what lies beside it: family, date and machine. Targets of nothing but
+    /// fragments, measured alone, have one of their own, as they may be measured on the same day.
     pub fn stem(&self) -> String {
         let Self { family, date, .. } = self;
-        format!("bench-{family}-{date}-{}", self.machine.slug)
+        let scenes = self.scenes();
+        let full = !scenes.is_empty() && scenes.iter().all(|scene| scene.starts_with("full/"));
+        let alone = if full { "-full" } else { "" };
+        format!("bench-{family}{alone}-{date}-{}", self.machine.slug)
     }
 }
 

@@ -86,9 +86,7 @@ impl<'r> ByTiles<'r> {
     /// The frames that were measured; `surfaces` is what comes before them.
     pub(super) fn measured(&self, surfaces: &Measured) -> Vec<Measured> {
         let counts = &self.grid.counts;
-        // Lists that are too long for registers are merged from one array into another.
         let parts = self.timed.parts();
-        let merged = self.method == Method::Tiles && parts.contains(&Span::Sort);
         let frame = |(layers, error): &(u32, Error)| {
             let belongs = |span: &Span| match span {
                 Span::Shade(n) | Span::Local(n) => n == layers,
@@ -108,7 +106,7 @@ impl<'r> ByTiles<'r> {
                 memory: counts.triangles() + self.timed.bytes(),
                 of_fragment: match self.method {
                     Method::Local => None,
-                    method => Some(method.entry() * (1 + u64::from(merged))),
+                    method => Some(method.entry() * (1 + u64::from(self.timed.merges()))),
                 },
                 bands: u32::try_from(self.timed.bands()).unwrap_or(u32::MAX),
                 work: work.and(surfaces.work),

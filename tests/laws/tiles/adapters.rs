@@ -1,19 +1,24 @@
 //! Tiles on every adapter: what a run of few triangles cannot show.
 
+use triptych_gpu::lists::LONG;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::tiles::{Options, run, run_linked, run_local};
 use triptych_harness::compare::image;
 use triptych_harness::compare::order::flatten;
 use triptych_spec::abuffer::{build, opaque, resolve, sort};
-use triptych_spec::tiles::{BIN_SORTED, local};
+use triptych_spec::tiles::{BIN_SORTED, ROWS, local};
 
 use super::stack;
 use crate::adapters::devices;
 
-/// However few triangles a dispatch draws, lists that lie in rows and such that do not are whole.
+/// However few triangles a dispatch draws, lists that lie in rows, such that do not, and such that are
+/// merged are whole.
 #[test]
 fn dispatches_go_on_where_the_last_one_stopped() {
-    for depth in [40, 100, 600] {
+    let all: &[u32] = &[1, 7, 64, 1000];
+    let few: &[u32] = &[64, 1000];
+    let long = [ROWS, ROWS + 1, LONG, LONG + 1].map(|depth| (depth, few));
+    for (depth, at_once) in [(40, all), (100, all)].into_iter().chain(long) {
         let layers = stack(depth);
         let primitives = &layers.primitives;
         let surfaces = opaque(&layers.scene, primitives);
@@ -37,7 +42,7 @@ fn dispatches_go_on_where_the_last_one_stopped() {
         for (gpu, kernels) in devices() {
             let rasterizer = Rasterizer::new(gpu, &kernels[0], Path::Compute, primitives, &faces);
             let rasterizer = rasterizer.expect("few triangles");
-            for drawn in [1, 7, 64, 1000] {
+            for &drawn in at_once {
                 let options = Options {
                     opaque: &surfaces,
                     depth_test: false,

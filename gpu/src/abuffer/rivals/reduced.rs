@@ -117,15 +117,14 @@ fn blend(low: Low<'_, '_>, given: Given<'_>) -> Result<Blended, GpuError> {
     for _ in 0..=u64::from(low.layers) / STEPS {
         passes.push(ready("reduced_layers")?);
     }
-    let start = Instant::now();
-    run_through(
+    let time = run_through(
         rasterizer,
         passes.iter(),
         by_name(&own, "unfinished"),
         "reduced",
     )?;
     Ok(Blended {
-        time: start.elapsed(),
+        time,
         layers: by_name(&own, "picture").clone(),
         bytes: own.iter().map(|(_, buffer)| buffer.size()).sum(),
     })

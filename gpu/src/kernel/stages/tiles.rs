@@ -31,8 +31,9 @@ pub(super) const JAGGED: Stage = Stage {
     fragment: &[],
     contract: "A workgroup for each tile of tiled.items: counts the fragments of each pixel from \
         the triangles tiled.first of its bin on, tiled.count of them; places the lists as jagged \
-        diagonals; fills them with key and triangle, and marks those that came in order. Lists of more \
-        than 256 lie one after another.",
+        diagonals: entry i of a list is at start + rows[rows[tile] + i], where rows[tile] is tiled.items \
+        + bins[tile]; of a tile with one of more than 256, each list is a run of its own, and marked. \
+        Fills them with key and triangle, and marks those that came in order.",
 };
 
 /// Lists in order, and blended.
@@ -51,9 +52,9 @@ pub(super) const SHADE: Stage = Stage {
         "shade_long",
     ],
     fragment: &[],
-    contract: "Blends marked lists of up to 16,384 entries as they are. Puts others in order: of more \
-        than 64 entries in several passes, of at most 8, 16, 32 and 64 in registers, from where they \
-        are written back if tiled.stored says so. Blends all into `picture`, in front of the opaque key only.",
+    contract: "Blends marked lists of up to 16,384 entries as they are. Puts others in order: runs \
+        of their own, and lists of more than 64 entries, in several passes; rows of at most 8, 16, 32 and \
+        64 in registers, from where they are written back if tiled.stored says so. Blends all into `picture`, in front of the opaque key only.",
 };
 
 /// The picture without lists in memory.

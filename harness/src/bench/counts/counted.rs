@@ -3,7 +3,8 @@
 use triptych_gpu::raster::SATURATED;
 use triptych_spec::abuffer::{NOTHING, Opaque, opaque, visible};
 use triptych_spec::raster;
-use triptych_spec::scene::Scene;
+use triptych_spec::scene::{Scene, Size};
+use triptych_spec::tiles::SIDE;
 use triptych_spec::vertex::Primitives;
 
 use super::Counts;
@@ -69,6 +70,7 @@ impl Counts {
             transparent: faces.len() as u64 - opaque_triangles,
             opaque: opaque_triangles,
             lengths,
+            rows: self::rows(&lists, primitives.size),
         };
         Ok(Counted {
             rows: rows.map(|row| row.iter().sum()).collect(),
@@ -76,6 +78,19 @@ impl Counts {
             opaque: surfaces,
         })
     }
+}
+
+/// Words that tell of the rows of tiles, from the lengths of all lists.
+pub(super) fn rows(lists: &[u32], size: Size) -> u64 {
+    let across = size.width.div_ceil(SIDE) as usize;
+    let mut longest = vec![0; across * size.height.div_ceil(SIDE) as usize];
+    for (y, row) in lists.chunks(size.width as usize).enumerate() {
+        for (x, length) in row.iter().enumerate() {
+            let tile = &mut longest[y / SIDE as usize * across + x / SIDE as usize];
+            *tile = (*length).max(*tile);
+        }
+    }
+    longest.iter().map(|length| 1 + u64::from(*length)).sum()
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ pub(super) type Patch = (&'static str, &'static str, &'static str);
 /// The key of a run of one is taken up and put down; longer runs are sorted as ever.
 pub(super) const RUNS_OF_ONE: Patch = (
     "sort",
-    "for (var i = start + 1u; i < end; i += 1u)",
-    "for (var i = select(start + 1u, start, end == start + 1u); i < end; i += 1u)",
+    "for (var i = 1u; i < run.length; i += 1u)",
+    "for (var i = u32(run.length > 1u); i < run.length; i += 1u)",
 );
 
 /// A chain of one is merged like any other.
