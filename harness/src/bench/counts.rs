@@ -33,8 +33,8 @@ mod layouts;
 
 use super::Method;
 use triptych_gpu::abuffer::Part;
-use triptych_spec::abuffer::NOTHING;
-use triptych_spec::raster;
+use triptych_spec::abuffer::{NOTHING, visible};
+use triptych_spec::raster::{self, Fragment};
 
 use crate::replay::spec::SpecRun;
 pub use counted::Counted;
@@ -52,6 +52,8 @@ pub struct Counts {
     opaque: u64,
     /// How many lists there are of each length.
     lengths: Vec<u64>,
+    /// The same of what of a list is not hidden, and so is shown.
+    seen: Vec<u64>,
     /// Words that tell where rows of a tile are: one, and one more for each entry of its longest list.
     rows: u64,
 }
@@ -84,14 +86,9 @@ impl Counts {
         let opaque_fragments = run.cover.iter().filter(|f| opaque(&f.prim)).count() as u64;
         let triangles = run.faces.len() as u64;
         let opaque_triangles = run.faces.iter().filter(|face| face[3] >= 1.0).count() as u64;
-        let mut lengths = Vec::new();
-        for ends in run.sorted.offsets.windows(2) {
-            let length = (ends[1] - ends[0]) as usize;
-            if lengths.len() <= length {
-                lengths.resize(length + 1, 0);
-            }
-            lengths[length] += 1;
-        }
+        let is_seen = |f: &&Fragment| visible(&run.primitives, &run.opaque, f) != 0;
+        let seen = (0..run.primitives.size.pixels())
+            .map(|pixel| run.sorted.list(pixel).iter().filter(is_seen).count());
         Self {
             pixels: run.primitives.size.pixels() as u64,
             fragments: run.sorted.fragments.len() as u64,
@@ -100,7 +97,8 @@ impl Counts {
             opaque_pixels: run.opaque.prim.iter().filter(|p| **p != NOTHING).count() as u64,
             transparent: triangles - opaque_triangles,
             opaque: opaque_triangles,
-            lengths,
+            lengths: histogram(run.sorted.lengths()),
+            seen: histogram(seen.map(|n| u32::try_from(n).expect("of a list"))),
             rows: counted::rows(
                 &run.sorted.lengths().collect::<Vec<_>>(),
                 run.primitives.size,
@@ -113,10 +111,9 @@ impl Counts {
         u32::try_from(self.lengths.len().saturating_sub(1)).unwrap_or(u32::MAX)
     }
 
-    /// Layers shown, `S(n)`. Nodes behind an opaque surface are not in lists here, as
-    /// the plan leaves them out.
-    fn shown(&self, n: u32) -> u64 {
-        self.sum(|length| length.min(n.into()))
+    /// Layers shown, `S(n)`: what lies behind an opaque surface ends a list that holds it.
+    pub(super) fn shown(&self, n: u32) -> u64 {
+        sum(&self.seen, |length| length.min(n.into()))
     }
 
     /// Triangles of so many nearest layers, at most.
@@ -124,17 +121,11 @@ impl Counts {
         self.shown(n).min(self.transparent)
     }
 
-    /// The sum over lists of something that depends on the length.
-    fn sum(&self, of: impl Fn(u64) -> u64) -> u64 {
-        (0_u64..)
-            .zip(&self.lengths)
-            .map(|(l, lists)| lists * of(l))
-            .sum()
-    }
-
     /// Nodes that are relinked, `M`.
     fn merged(&self) -> u64 {
-        self.sum(|length| length * u64::from(length.max(1).next_power_of_two().ilog2()))
+        sum(&self.lengths, |length| {
+            length * u64::from(length.max(1).next_power_of_two().ilog2())
+        })
     }
 
     /// What a part must do.
@@ -198,6 +189,25 @@ impl Counts {
     }
 }
 
+/// How many lists there are of each length.
+fn histogram(lengths: impl Iterator<Item = u32>) -> Vec<u64> {
+    let mut lists = Vec::new();
+    for length in lengths {
+        let length = length as usize;
+        if lists.len() <= length {
+            lists.resize(length + 1, 0);
+        }
+        lists[length] += 1;
+    }
+    lists
+}
+
+/// The sum over lists of something that depends on the length.
+fn sum(lists: &[u64], of: impl Fn(u64) -> u64) -> u64 {
+    let each = (0_u64..).zip(lists);
+    each.map(|(length, lists)| lists * of(length)).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use triptych_gpu::abuffer;
@@ -215,6 +225,7 @@ mod tests {
             transparent: 2,
             opaque: 1,
             lengths: vec![2, 1, 0, 0, 0, 2],
+            seen: vec![2, 1, 0, 0, 0, 2],
             rows: 6,
         }
     }

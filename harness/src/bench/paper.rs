@@ -31,6 +31,8 @@ pub struct Scene {
     pub(super) rivals: bool,
     /// Whether it is too much for a software driver.
     pub(super) boards: bool,
+    /// Whether what it does not need is skipped.
+    pub(super) skip: bool,
 }
 
 /// The teapot of Table 1.
@@ -51,6 +53,7 @@ pub const SCENES: [Scene; 3] = [
         samples: &[],
         rivals: true,
         boards: false,
+        skip: true,
     },
     Scene {
         name: DRAGON,
@@ -59,6 +62,7 @@ pub const SCENES: [Scene; 3] = [
         samples: &[1, 2, 4, 8],
         rivals: true,
         boards: false,
+        skip: true,
     },
     Scene {
         name: MECHA,
@@ -67,6 +71,7 @@ pub const SCENES: [Scene; 3] = [
         samples: &[],
         rivals: true,
         boards: false,
+        skip: true,
     },
 ];
 
@@ -171,6 +176,7 @@ impl Scene {
             samples,
             rivals: self.rivals || (options.rivals && !self.boards),
             boards: self.boards,
+            skip: self.skip,
         }
     }
 }

@@ -71,6 +71,8 @@ pub(super) struct Asked {
     pub(super) rivals: bool,
     /// Whether it is too much for a software driver.
     pub(super) boards: bool,
+    /// Whether what a scene does not need is skipped.
+    pub(super) skip: bool,
 }
 
 /// What came of a run.
@@ -221,6 +223,7 @@ impl Bench {
                 samples: options.samples.clone(),
                 rivals: options.rivals,
                 boards: false,
+                skip: true,
             };
             all.extend(loaded.map(|loaded| (loaded, asked)));
         }

@@ -116,7 +116,7 @@ pub(super) fn scene(
     progress: &Progress,
 ) -> Result<Done, String> {
     let name = &loaded.name;
-    let plan = Plan::of(loaded, true);
+    let plan = Plan::of(loaded, asked.skip);
     let mut done = Done::default();
     let (grids, legs) = grids(loaded, asked, &plan, (stations, options), &mut done)?;
     let own = (SUBPIXEL_BITS, loaded.scene.samples);

@@ -7,7 +7,7 @@ use triptych_spec::scene::{Scene, Size};
 use triptych_spec::tiles::SIDE;
 use triptych_spec::vertex::Primitives;
 
-use super::Counts;
+use super::{Counts, histogram};
 use crate::plan::Plan;
 use crate::replay::spec::faces;
 
@@ -33,7 +33,7 @@ impl Counts {
             false => Opaque::nothing(primitives),
         };
         let pixels = primitives.size.pixels();
-        let mut lists = vec![0_u32; pixels];
+        let (mut lists, mut seen) = (vec![0_u32; pixels], vec![0_u32; pixels]);
         let (mut considered, mut opaque_fragments) = (0, 0);
         raster::cover(primitives, |f| {
             if faces[f.prim as usize][3] >= 1.0 {
@@ -41,8 +41,9 @@ impl Counts {
                 return;
             }
             considered += 1;
-            let kept = !plan.depth_test || visible(primitives, &surfaces, &f) != 0;
-            lists[f.pixel as usize] += u32::from(kept);
+            let is_seen = visible(primitives, &surfaces, &f) != 0;
+            lists[f.pixel as usize] += u32::from(!plan.depth_test || is_seen);
+            seen[f.pixel as usize] += u32::from(is_seen);
         });
         let fragments: u64 = lists.iter().map(|list| u64::from(*list)).sum();
         if fragments >= u64::from(SATURATED) {
@@ -50,14 +51,6 @@ impl Counts {
                 "{fragments} fragments in lists, more than the {} that are counted",
                 SATURATED - 1
             ));
-        }
-        let mut lengths = Vec::new();
-        for list in &lists {
-            let length = *list as usize;
-            if lengths.len() <= length {
-                lengths.resize(length + 1, 0);
-            }
-            lengths[length] += 1;
         }
         let rows = lists.chunks(primitives.size.width as usize);
         let opaque_triangles = faces.iter().filter(|face| face[3] >= 1.0).count() as u64;
@@ -69,7 +62,8 @@ impl Counts {
             opaque_pixels: surfaces.prim.iter().filter(|p| **p != NOTHING).count() as u64,
             transparent: faces.len() as u64 - opaque_triangles,
             opaque: opaque_triangles,
-            lengths,
+            lengths: histogram(lists.iter().copied()),
+            seen: histogram(seen.into_iter()),
             rows: self::rows(&lists, primitives.size),
         };
         Ok(Counted {
