@@ -127,10 +127,9 @@ fn the_finest_grid_turns_nothing() {
 /// Patches of the vertex shader that hands triangles to the driver, and of the key.
 #[test]
 fn planted_bugs_are_outside_the_band() {
-    let at = "let at = corner(prim, index % 3u);";
-    let missing = "let at = corner(prim, select(index % 3u, 0u, prim == 7u));";
-    let moved =
-        "let at = corner(prim, index % 3u) + select(0, 1 << (frame.bits - 2u), prim == 7u);";
+    let at = "let at = corner(prim, number);";
+    let missing = "let at = corner(prim, select(number, 0u, prim == 7u));";
+    let moved = "let at = corner(prim, number) + select(0, 1 << (frame.bits - 2u), prim == 7u);";
     let key = ("first + second + 1u", "first + second");
     let defects = [
         ("place", at, missing, Cause::Coverage),

@@ -16,13 +16,14 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 30] = [
+const ROOTS: [&str; 31] = [
     "abuffer",
     "alpha",
     "ceiling",
     "defocus",
     "density",
     "dual",
+    "early",
     "fan_scan",
     "fans",
     "grid",
@@ -50,8 +51,9 @@ const ROOTS: [&str; 30] = [
 ];
 
 /// The files that have entry points of others, with other imports.
-const VARIANTS: [&str; 5] = [
+const VARIANTS: [&str; 6] = [
     "abuffer_samples",
+    "early_samples",
     "linked_samples",
     "local_samples",
     "raster_samples",
@@ -198,10 +200,13 @@ fn workgroups_share_no_more_memory_than_every_adapter_has() {
 #[test]
 fn baseline_programs_need_no_capability() {
     for root in programs() {
-        let capabilities = match root.native {
+        let mut capabilities = match root.native {
             true => Capabilities::SHADER_INT64,
             false => Capabilities::empty(),
         };
+        if root.name.starts_with("early") {
+            capabilities |= Capabilities::EARLY_DEPTH_TEST;
+        }
         let valid =
             Validator::new(ValidationFlags::all(), capabilities).validate(&root.program.module);
         assert!(valid.is_ok(), "{}: {:?}", root.name, valid.err());
@@ -225,7 +230,10 @@ fn vertices_are_placed_without_inexact_operations() {
         let entries = entries.filter(|(_, e)| e.stage == ShaderStage::Vertex);
         let entries = entries.map(|(n, e)| (&e.function, info.get_entry_point(n)));
         let shared = module.functions.iter().map(|(h, f)| (f, &info[h]));
-        let shared = shared.filter(|(f, _)| f.name.as_deref() == Some("power_of_half"));
+        let shared = shared.filter(|(f, _)| {
+            let names = ["power_of_half", "placed", "depth_of"];
+            f.name.as_deref().is_some_and(|name| names.contains(&name))
+        });
         for (function, info) in entries.chain(shared) {
             let inexact = |(at, expression): &(naga::Handle<Expression>, &Expression)| {
                 let kind = info[*at].ty.inner_with(&module.types).scalar_kind();
@@ -251,8 +259,8 @@ fn vertices_are_placed_without_inexact_operations() {
         }
     }
     assert_eq!(
-        seen, 126,
-        "three functions in twenty-one programs of two forms each"
+        seen, 196,
+        "four functions in twenty-one programs of two forms each, and seven in two more"
     );
 }
 

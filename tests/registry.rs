@@ -157,8 +157,11 @@ fn measured_kernels_are_those_of_the_wgsl() {
     );
 }
 
-/// Only a family's own file, what is measured and place.wgsl may have entry points: what is in others
-/// would be seen by no family, or by several.
+/// Of the A-buffer's fragments that are tested before they run.
+const EARLY: &str = "early";
+
+/// Only a family's own file, what is measured, place.wgsl and early.wgsl may have entry points: what is in
+/// others would be seen by no family, or by several.
 #[test]
 fn entry_points_are_in_the_families_files() {
     let mut checked = 0;
@@ -169,7 +172,7 @@ fn entry_points_are_in_the_families_files() {
         let text = read(&path);
         let has = text.lines().any(|l| kinds.iter().any(|k| l.starts_with(k)));
         let measured = MEASURED.iter().any(|m| m.file == stem);
-        let may = stem == PLACE
+        let may = [PLACE, EARLY].contains(&stem.as_str())
             || measured
             || FAMILIES
                 .iter()

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use triptych_spec::raster::Samples;
 
 use crate::error::GpuError;
-use crate::kernel::{Made, TARGET_FORMAT};
+use crate::kernel::{DEPTH_FORMAT, Made, TARGET_FORMAT};
 
 /// What a device has beyond WebGPU's defaults, if its adapter does: 64-bit integers for
 /// path `native`, with atomics of these and blending of 32-bit floats for rivals of lists,
@@ -16,6 +16,7 @@ const FEATURES: wgpu::Features = wgpu::Features::SHADER_INT64
     .union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX)
     .union(wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS)
     .union(wgpu::Features::FLOAT32_BLENDABLE)
+    .union(wgpu::Features::SHADER_EARLY_DEPTH_TEST)
     .union(wgpu::Features::TIMESTAMP_QUERY)
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
 
@@ -53,8 +54,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The largest buffer that a kernel may see, in bytes.
     binding_limit: u64,
-    /// How many samples a pixel of a target may have.
-    samples: Vec<u32>,
+    /// How many samples a pixel of a target may have, and of its depth.
+    samples: [Vec<u32>; 2],
     /// Bytes in all that are as good as there, for tests.
     memory_limit: Option<u64>,
     /// Pipelines, whosever sources they come from.
@@ -104,7 +105,7 @@ impl Gpu {
             name,
             info,
             binding_limit: binding_limit(&device),
-            samples: sample_counts(adapter, &device),
+            samples: [TARGET_FORMAT, DEPTH_FORMAT].map(|f| sample_counts(adapter, &device, f)),
             device,
             queue,
             memory_limit: None,
@@ -132,6 +133,13 @@ impl Gpu {
         self.has_int64() && self.device.features().contains(needed)
     }
 
+    /// Whether the adapter tests depth before it runs a fragment that writes to buffers, in targets of so
+    /// many samples a pixel.
+    pub fn tests_depth_early(&self, samples: u32) -> bool {
+        let needed = wgpu::Features::SHADER_EARLY_DEPTH_TEST;
+        self.device.features().contains(needed) && self.samples[1].contains(&samples)
+    }
+
     /// Whether the adapter blends 32-bit floats.
     pub fn blends_floats(&self) -> bool {
         self.device
@@ -148,7 +156,7 @@ impl Gpu {
 
     /// Whether targets of the hardware's rasteriser may have so many samples a pixel.
     pub fn has_samples(&self, count: u32) -> bool {
-        self.samples.contains(&count)
+        self.samples[0].contains(&count)
     }
 
     /// The largest buffer that a kernel may see, in bytes.
@@ -215,9 +223,13 @@ impl Gpu {
 }
 
 /// WebGPU has 1 and 4 everywhere; others are the adapter's own.
-fn sample_counts(adapter: &wgpu::Adapter, device: &wgpu::Device) -> Vec<u32> {
+fn sample_counts(
+    adapter: &wgpu::Adapter,
+    device: &wgpu::Device,
+    format: wgpu::TextureFormat,
+) -> Vec<u32> {
     let own = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
-    let flags = adapter.get_texture_format_features(TARGET_FORMAT).flags;
+    let flags = adapter.get_texture_format_features(format).flags;
     let has = |count: &u32| match count {
         1 | 4 => true,
         _ => device.features().contains(own) && flags.sample_count_supported(*count),

@@ -1,6 +1,7 @@
 //! Pipelines by the name of their entry point, bound by the names of variables.
 
 mod blending;
+mod depth;
 mod foreign;
 mod layout;
 mod made;
@@ -20,6 +21,7 @@ pub(crate) use made::Made;
 use made::{Recipe, State};
 use module::{Checks, Module, bindings, uses};
 
+pub(crate) use depth::DEPTH_FORMAT;
 pub use foreign::Foreign;
 pub use pipeline::{Kernel, Pipeline};
 pub use skeleton::skeleton;
@@ -117,6 +119,11 @@ impl Kernels {
         })
     }
 
+    /// Whether an entry point is the one that ships, as far as files go.
+    pub(crate) fn is_ours(&self, entry: &str) -> bool {
+        !self.foreign.contains_key(entry)
+    }
+
     /// What the host does wrong on purpose.
     pub fn fault(&self) -> Option<Fault> {
         self.fault
@@ -193,7 +200,7 @@ impl Kernels {
                         buffers: &[],
                     },
                     primitive: wgpu::PrimitiveState::default(),
-                    depth_stencil: None,
+                    depth_stencil: depth::state(module.program.depth(entry)),
                     multisample: wgpu::MultisampleState {
                         count: samples,
                         ..Default::default()
@@ -236,6 +243,7 @@ impl Kernels {
             samples,
             checks: self.checks,
             colour: self.writes_colour(&module, entry),
+            depth: module.program.depth(entry),
             into: into.to_owned(),
         };
         let recipe = Recipe::new(entries, &bindings, state);
@@ -245,6 +253,7 @@ impl Kernels {
             None => {
                 let kernel = Arc::new(Kernel {
                     pipeline: make(&ours, &module),
+                    depth: module.program.depth(entry),
                     bindings,
                     uses: uses(entries),
                 });

@@ -23,15 +23,19 @@ fn power_of_half(n: u32) -> f32 {
 // device coordinates of grid points are exact: integers of 20 bits, which convert
 // exactly, times a power of two, and WGSL rounds a product to the exact value if
 // there is one. The driver, which snaps to the same grid or a finer one, neither
-// rounds nor clips. Depth is not used.
-@vertex
-fn place(@builtin(vertex_index) index: u32) -> Placed {
-    let prim = work[frame.work_first + index / 3u].x;
-    let at = corner(prim, index % 3u);
+// rounds nor clips.
+fn placed(prim: u32, number: u32, depth: f32) -> Placed {
+    let at = corner(prim, number);
     let middle = (vec2(frame.guard_x, frame.guard_y) + GUARD / 2) << vec2(frame.bits);
     let scale = power_of_half(HALF_GUARD_EXPONENT + frame.bits);
     let ndc = vec2<f32>(at.xy - middle) * vec2(scale, -scale);
-    return Placed(vec4(ndc, 0.5, 1.0), prim);
+    return Placed(vec4(ndc, depth, 1.0), prim);
+}
+
+// Depth is not used.
+@vertex
+fn place(@builtin(vertex_index) index: u32) -> Placed {
+    return placed(work[frame.work_first + index / 3u].x, index % 3u, 0.5);
 }
 
 // Clip space for the same viewport, three corners a triangle: the driver divides, clips

@@ -2,10 +2,11 @@
 
 mod attempts;
 mod cover;
+mod early;
 mod ready;
 mod work;
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::time::{Duration, Instant};
 
 use triptych_spec::raster::Samples;
@@ -73,6 +74,8 @@ pub struct Rasterizer<'g> {
     /// The smallest and the largest depth key of a corner.
     depths: [u32; 2],
     target: wgpu::TextureView,
+    /// Its depth, once kernels are tested by it before they run.
+    depth: OnceCell<wgpu::TextureView>,
     passes: RefCell<Vec<Pass>>,
 }
 
@@ -117,7 +120,8 @@ impl<'g> Rasterizer<'g> {
             handed: None,
             faces: gpu.upload("faces", faces)?,
             colours: faces.to_vec(),
-            target: target(gpu, primitives.size, drawn)?,
+            target: texture(gpu, ("target", TARGET_FORMAT, 1), primitives.size, drawn)?,
+            depth: OnceCell::new(),
             passes: RefCell::default(),
         })
     }
@@ -164,11 +168,13 @@ impl<'g> Rasterizer<'g> {
         work: &Work,
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Duration, GpuError> {
+        self.run(&self.ready(file, stage, frame, work, buffers)?)
+    }
+
+    /// Runs passes, and waits for them.
+    pub(crate) fn run(&self, passes: &[Ready]) -> Result<Duration, GpuError> {
         let mut encoder = self.gpu.encoder();
-        for pass in self.ready(file, stage, frame, work, buffers)? {
-            pass.record(self, &mut encoder, None);
-            self.note(&pass.stage, pass.shared, &pass.kernel);
-        }
+        self.record(passes, &mut encoder);
         let start = Instant::now();
         self.gpu.submit(encoder)?;
         Ok(start.elapsed())
@@ -253,9 +259,15 @@ fn depths(corners: &[[[i32; 3]; 3]]) -> [u32; 2] {
     [keys().min().unwrap_or(0), keys().max().unwrap_or(0)]
 }
 
-fn target(gpu: &Gpu, size: Size, samples: u32) -> Result<wgpu::TextureView, GpuError> {
+/// A texture to draw to, of a format of so many bytes.
+fn texture(
+    gpu: &Gpu,
+    (what, format, bytes): (&'static str, wgpu::TextureFormat, u64),
+    size: Size,
+    samples: u32,
+) -> Result<wgpu::TextureView, GpuError> {
     let descriptor = wgpu::TextureDescriptor {
-        label: Some("target"),
+        label: Some(what),
         size: wgpu::Extent3d {
             width: size.width,
             height: size.height,
@@ -264,11 +276,11 @@ fn target(gpu: &Gpu, size: Size, samples: u32) -> Result<wgpu::TextureView, GpuE
         mip_level_count: 1,
         sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
-        format: TARGET_FORMAT,
+        format,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
         view_formats: &[],
     };
-    let bytes = u64::from(size.width) * u64::from(size.height) * u64::from(samples);
-    let texture = gpu.make("target", bytes, |device| device.create_texture(&descriptor))?;
+    let bytes = bytes * u64::from(size.width) * u64::from(size.height) * u64::from(samples);
+    let texture = gpu.make(what, bytes, |device| device.create_texture(&descriptor))?;
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }

@@ -164,7 +164,8 @@ impl Linked {
         let capabilities = Capabilities::default()
             | Capabilities::SHADER_INT64
             | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX
-            | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS;
+            | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS
+            | Capabilities::EARLY_DEPTH_TEST;
         let info = Validator::new(ValidationFlags::all(), capabilities)
             .validate(&module)
             .map_err(|e| {
@@ -192,6 +193,17 @@ impl Linked {
     }
 }
 
+/// What a fragment entry point has to do with depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Depth {
+    /// Nothing.
+    Unused,
+    /// It gives the depth of its pixel.
+    Written,
+    /// It runs where a triangle is not behind it.
+    Tested,
+}
+
 impl Program {
     /// A mistake at a line of the linked text, as a mistake at its origin.
     pub fn error(&self, line: u32, message: &str) -> WgslError {
@@ -215,6 +227,21 @@ impl Program {
     pub fn returns(&self, entry: &str) -> bool {
         let mut entries = self.module.entry_points.iter();
         entries.any(|e| e.name == entry && e.function.result.is_some())
+    }
+
+    /// What a fragment entry point has to do with depth.
+    pub fn depth(&self, entry: &str) -> Depth {
+        let mut entries = self.module.entry_points.iter();
+        let Some(entry) = entries.find(|e| e.name == entry) else {
+            return Depth::Unused;
+        };
+        let result = entry.function.result.as_ref();
+        let binding = result.and_then(|result| result.binding.as_ref());
+        match (entry.early_depth_test, binding) {
+            (Some(_), _) => Depth::Tested,
+            (None, Some(naga::Binding::BuiltIn(naga::BuiltIn::FragDepth))) => Depth::Written,
+            _ => Depth::Unused,
+        }
     }
 
     /// The names of all resource variables by their bindings.

@@ -139,9 +139,8 @@ impl Run<'_, '_> {
     fn build(&mut self, b: &Buffers, is_opaque: &impl Fn(u32) -> bool) -> Result<(), GpuError> {
         let work = self.rasterizer.work(self.band, |prim| !is_opaque(prim))?;
         let buffers = b.named();
-        self.times.build =
-            self.rasterizer
-                .draw("abuffer", "build", self.frame(), &work, &buffers)?;
+        let passes = self.rasterizer.ready_build(self.frame(), &work, &buffers)?;
+        self.times.build = self.rasterizer.run(&passes)?;
         Ok(())
     }
 

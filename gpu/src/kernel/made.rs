@@ -9,7 +9,7 @@ use naga::back::spv;
 
 use super::Kernel;
 use super::module::{Checks, Module};
-use crate::wgsl::Program;
+use crate::wgsl::{Depth, Program};
 
 /// All that a pipeline follows from.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
@@ -29,6 +29,7 @@ pub(super) struct State {
     pub(super) checks: Checks,
     /// Whether it writes the colour that it returns.
     pub(super) colour: bool,
+    pub(super) depth: Depth,
     /// The targets that it blends into, in wgpu's words.
     pub(super) into: String,
 }
@@ -155,6 +156,7 @@ mod tests {
             state: State {
                 samples: 0,
                 checks: Checks::Kept,
+                depth: Depth::Unused,
                 colour: false,
                 into: word.to_string(),
             },

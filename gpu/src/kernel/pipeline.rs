@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use crate::context::Gpu;
 use crate::pass::Uses;
+use crate::wgsl::Depth;
 
 /// A pipeline and the variables that it uses.
 pub struct Kernel {
     /// Compute or render.
     pub pipeline: Pipeline,
+    /// What it has to do with depth.
+    pub(crate) depth: Depth,
     /// Variable name and binding number, both stages of a render pipeline together.
     pub(super) bindings: Vec<(String, u32)>,
     /// What it does to plain data.

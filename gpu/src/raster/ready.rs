@@ -10,6 +10,7 @@ use crate::error::GpuError;
 use crate::frame::{Frame, WORKGROUP};
 use crate::kernel::{Kernel, Pipeline};
 use crate::timer::Writes;
+use crate::wgsl::Depth;
 
 /// A pass that is ready.
 pub(crate) struct Ready {
@@ -18,10 +19,10 @@ pub(crate) struct Ready {
     pub(super) stage: String,
     /// Whether several invocations may work on one pixel.
     pub(super) shared: bool,
-    group: wgpu::BindGroup,
-    frame: Frame,
+    pub(super) group: wgpu::BindGroup,
+    pub(super) frame: Frame,
     /// Invocations, if it is a compute pass.
-    invocations: u32,
+    pub(super) invocations: u32,
 }
 
 impl Rasterizer<'_> {
@@ -162,7 +163,8 @@ impl Ready {
                 pass.dispatch_workgroups(self.invocations.div_ceil(WORKGROUP), 1, 1);
             }
             Pipeline::Render(pipeline) => {
-                let mut pass = begin_render(encoder, &rasterizer.target, writes);
+                let depth = rasterizer.depth.get().map(|view| (view, self.kernel.depth));
+                let mut pass = begin_render(encoder, &rasterizer.target, depth, writes);
                 self.draw(pipeline, rasterizer.size, &mut pass);
             }
         }
@@ -183,8 +185,24 @@ impl Ready {
 fn begin_render<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     target: &wgpu::TextureView,
+    depth: Option<(&wgpu::TextureView, Depth)>,
     writes: Option<Writes<'_>>,
 ) -> wgpu::RenderPass<'e> {
+    let attached = |(view, depth)| {
+        let load = match depth {
+            Depth::Unused => return None,
+            Depth::Written => wgpu::LoadOp::Clear(1.0),
+            Depth::Tested => wgpu::LoadOp::Load,
+        };
+        Some(wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations {
+                load,
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        })
+    };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: None,
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -196,6 +214,7 @@ fn begin_render<'e>(
                 store: wgpu::StoreOp::Discard,
             },
         })],
+        depth_stencil_attachment: depth.and_then(attached),
         timestamp_writes: writes.map(Writes::render),
         ..Default::default()
     })

@@ -34,6 +34,8 @@ const FILES: &[(&str, &str)] = shipped![
     "drawn",
     "drawn_samples",
     "dual",
+    "early",
+    "early_samples",
     "entry",
     "fan_scan",
     "fans",

@@ -61,7 +61,12 @@ fn list(out: &mut impl Write, Adapters { open, broken }: &Adapters) -> anyhow::R
         } else {
             "no 64-bit integers"
         };
-        writeln!(out, "    binding at most {limit} MiB, {int64}")?;
+        let early = if gpu.tests_depth_early(1) {
+            "early depth test"
+        } else {
+            "no early depth test"
+        };
+        writeln!(out, "    binding at most {limit} MiB, {int64}, {early}")?;
         match grid {
             Grid::Bits(bits) => writeln!(out, "    sub-pixel grid 1/{}", 1 << bits)?,
             Grid::Unknown => writeln!(out, "    sub-pixel grid unknown: compared by a band")?,

@@ -50,7 +50,7 @@ impl Strip {
         }
         if options.lists {
             let work = rasterizer.work(band, |prim| !is_opaque(prim))?;
-            let passes = rasterizer.ready("abuffer", "build", frame, &work, &named)?;
+            let passes = rasterizer.ready_build(frame, &work, &named)?;
             parts.push((Part::Build, passes));
         }
         Ok(Self {

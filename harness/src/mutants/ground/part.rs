@@ -4,6 +4,9 @@ use triptych_gpu::wgsl::{Sources, WgslError};
 
 use crate::registry::RIVALS;
 
+/// Files of the stages from the spec's triangles to the picture.
+const LISTS: [&str; 5] = ["raster", "abuffer", "early", "early_samples", "multisample"];
+
 /// Files of the lists in other layouts.
 const LAYOUTS: [&str; 8] = [
     "layouts",
@@ -58,7 +61,7 @@ pub(super) fn touched(sources: &Sources, native: bool) -> Result<Part, WgslError
     if differ(sources, native, &["vertex"])?.next().is_some() {
         return Ok(Part::Vertex);
     }
-    let lists = differ(sources, native, &["raster", "abuffer", "multisample"])?.next();
+    let lists = differ(sources, native, &LISTS)?.next();
     let rivals = differ(sources, native, &RIVALS)?.next();
     let tiles = differ(sources, native, &TILES)?.next();
     let layouts = differ(sources, native, &LAYOUTS)?.next();

@@ -1,0 +1,70 @@
+//! Lists built by fragments that passed a test of depth before they ran, where an adapter has one.
+//!
+//! Yang et al. 2010, appendix A: `earlydepthstencil`. Without the attribute, a kernel that writes to buffers
+//! runs before any test. What passes is tested by the exact key all the same.
+
+use super::{Path, Rasterizer, Ready, Work, texture};
+use crate::error::GpuError;
+use crate::frame::Frame;
+use crate::kernel::DEPTH_FORMAT;
+
+impl Rasterizer<'_> {
+    /// Whether lists are built behind such a test: on the fragment path, with kernels of ours, where hidden
+    /// fragments are left out.
+    fn tests_early(&self, frame: &Frame) -> bool {
+        let has_depth = self.path == Path::Fragment && self.handed.is_none();
+        let has_depth = has_depth && self.gpu.tests_depth_early(self.samples.count());
+        has_depth && self.kernels.is_ours("build_fragment") && frame.depth_test != 0
+    }
+
+    /// Makes the target's depth, unless it is there.
+    fn make_depth(&self) -> Result<(), GpuError> {
+        if self.depth.get().is_none() {
+            let format = ("depth", DEPTH_FORMAT, 4);
+            let made = texture(self.gpu, format, self.size, self.samples.count())?;
+            self.depth.get_or_init(|| made);
+        }
+        Ok(())
+    }
+
+    /// The passes that build the lists of a band, whose opaque surfaces are known: one for each batch, and
+    /// before them, if they are tested early, one that gives each pixel its depth.
+    pub(crate) fn ready_build(
+        &self,
+        frame: Frame,
+        work: &Work,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Vec<Ready>, GpuError> {
+        if !self.tests_early(&frame) || work.batches.is_empty() {
+            return self.ready("abuffer", "build", frame, work, buffers);
+        }
+        self.make_depth()?;
+        let file = match self.samples.count() {
+            1 => "early",
+            _ => "early_samples",
+        };
+        let kernel = |entries| {
+            self.kernels
+                .fragment(self.gpu, file, entries, self.samples.count())
+        };
+        let depth = kernel(["place_everywhere", "opaque_depth_fragment"])?;
+        let frame_of_depth = Frame {
+            work_count: 1,
+            ..frame
+        };
+        let uniform = self.gpu.uniform("frame", &frame_of_depth)?;
+        let mut all = vec![("frame", &uniform)];
+        all.extend_from_slice(buffers);
+        let mut passes = vec![Ready {
+            group: depth.bind(self.gpu, &all),
+            kernel: depth,
+            stage: "build".into(),
+            shared: false,
+            frame: frame_of_depth,
+            invocations: 0,
+        }];
+        let build = kernel(["place_nearest", "build_early_fragment"])?;
+        passes.extend(self.ready_kernel(&build, "build", frame, work, buffers)?);
+        Ok(passes)
+    }
+}
