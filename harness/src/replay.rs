@@ -214,3 +214,8 @@ impl Outcome {
         }
     }
 }
+
+/// Whether a program, or its variant for several samples, is among these.
+fn names(files: &[&str], file: &str) -> bool {
+    files.iter().any(|f| f.trim_end_matches("_samples") == file)
+}

@@ -9,11 +9,11 @@ use triptych_gpu::layouts::{Built, Layout, Options, is_wide, run as draw};
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_spec::abuffer::{Lists, Sorted};
 
-use super::Extent;
 use super::gpu::GpuLeg;
 use super::rivals::Listed;
 use super::rows::Rows;
 use super::tiles::part;
+use super::{Extent, names};
 use crate::cause::Cause;
 use crate::compare::lists::{certify, compare_overflowed};
 use crate::compare::{self, Judgement, compare};
@@ -41,10 +41,7 @@ pub fn run_only(
     extent: Extent,
     rows: &mut Rows,
 ) -> Result<(), GpuError> {
-    let has = |layout: &Layout| {
-        let file = layout.file();
-        files.iter().any(|f| f.trim_end_matches("_samples") == file)
-    };
+    let has = |layout: &Layout| names(files, layout.file());
     let mut rasterizer = None;
     let mut arrays = Vec::new();
     for layout in Layout::ALL.into_iter().filter(has) {

@@ -11,9 +11,9 @@ use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::raster::Fragment;
 use wgpu::DeviceType;
 
-use super::Extent;
 use super::gpu::{From, GpuLeg};
 use super::rows::Rows;
+use super::{Extent, names};
 use crate::cause::Cause;
 use crate::compare;
 use crate::row::Class;
@@ -57,7 +57,7 @@ pub fn run_only(
     if leg.path == Path::Fragment {
         return Ok(());
     }
-    let has = |file: &str| files.iter().any(|f| f.trim_end_matches("_samples") == file);
+    let has = |file: &str| names(files, file);
     let mut skipped = false;
     for (stage, _, class) in STAGES.into_iter().filter(|(_, file, _)| has(file)) {
         if let Some(reason) = reason_not_run(leg, extent, stage) {
