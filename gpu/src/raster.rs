@@ -74,6 +74,8 @@ pub struct Rasterizer<'g> {
     /// The smallest and the largest depth key of a corner.
     depths: [u32; 2],
     target: wgpu::TextureView,
+    /// Whether fragments that build lists may be tested by depth before they run.
+    early: bool,
     /// Its depth, once kernels are tested by it before they run.
     depth: OnceCell<wgpu::TextureView>,
     passes: RefCell<Vec<Pass>>,
@@ -121,6 +123,7 @@ impl<'g> Rasterizer<'g> {
             faces: gpu.upload("faces", faces)?,
             colours: faces.to_vec(),
             target: texture(gpu, ("target", TARGET_FORMAT, 1), primitives.size, drawn)?,
+            early: path == Path::Fragment && gpu.tests_depth_early(drawn),
             depth: OnceCell::new(),
             passes: RefCell::default(),
         })
@@ -152,6 +155,7 @@ impl<'g> Rasterizer<'g> {
             // Only the driver knows where they lie.
             rows: vec![Some([0, i64::from(size.height) - 1]); triangles.len()],
             handed: Some(gpu.upload("handed", triangles)?),
+            early: false,
             ..all
         })
     }

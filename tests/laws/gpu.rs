@@ -1,5 +1,8 @@
 //! Random triangles through every adapter and path: each stage equals the spec's.
 
+#[path = "gpu/early.rs"]
+mod early;
+
 use std::sync::OnceLock;
 
 use proptest::prelude::*;

@@ -3,18 +3,21 @@
 //! Yang et al. 2010, appendix A: `earlydepthstencil`. Without the attribute, a kernel that writes to buffers
 //! runs before any test. What passes is tested by the exact key all the same.
 
-use super::{Path, Rasterizer, Ready, Work, texture};
+use super::{Rasterizer, Ready, Work, texture};
 use crate::error::GpuError;
 use crate::frame::Frame;
 use crate::kernel::DEPTH_FORMAT;
 
 impl Rasterizer<'_> {
+    /// Behaves as on an adapter without such a test.
+    pub fn forgo_early_test(&mut self) {
+        self.early = false;
+    }
+
     /// Whether lists are built behind such a test: on the fragment path, with kernels of ours, where hidden
     /// fragments are left out.
     fn tests_early(&self, frame: &Frame) -> bool {
-        let has_depth = self.path == Path::Fragment && self.handed.is_none();
-        let has_depth = has_depth && self.gpu.tests_depth_early(self.samples.count());
-        has_depth && self.kernels.is_ours("build_fragment") && frame.depth_test != 0
+        self.early && self.kernels.is_ours("build_fragment") && frame.depth_test != 0
     }
 
     /// Makes the target's depth, unless it is there.

@@ -54,7 +54,8 @@ pub(super) const SHADE: Stage = Stage {
     fragment: &[],
     contract: "Blends marked lists of up to 16,384 entries as they are. Puts others in order: runs \
         of their own, and lists of more than 64 entries, in several passes; rows of at most 8, 16, 32 and \
-        64 in registers, from where they are written back if tiled.stored says so. Blends all into `picture`, in front of the opaque key only.",
+        64 in registers, from where they are written back if tiled.stored says so. Blends all into \
+        `picture`, in front of the opaque key only.",
 };
 
 /// The picture without lists in memory.
