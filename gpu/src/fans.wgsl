@@ -1,7 +1,6 @@
 // From clipped triangles to those that are rasterised, without the host, for `triptych bench`: the
-// fan of each, snapped, where `corners` has it, and the rows of each triangle, of which the walk
-// over them takes one at a time. Twin: `append_fans` in vertex.rs and `sampled_rows` in
-// raster/work.rs.
+// fan of each, snapped, where `corners` has it, and the walks over the rows of each triangle.
+// Twin: `append_fans` in vertex.rs and `sampled_rows` and `stride` in raster/work.rs.
 
 //#import vertex
 
@@ -15,8 +14,8 @@
 @group(0) @binding(11) var<storage, read> colours: array<vec4<f32>>;
 @group(0) @binding(12) var<storage, read_write> painted: array<vec4<f32>>;
 
-// Rows of each that is transparent, then of each that is opaque.
-@group(0) @binding(13) var<storage, read_write> rows: array<u32>;
+// Walks over each that is transparent, then over each that is opaque.
+@group(0) @binding(13) var<storage, read_write> walks: array<u32>;
 
 @compute @workgroup_size(WORKGROUP)
 fn fan_count(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -76,9 +75,10 @@ fn fan_snap(@builtin(global_invocation_id) id: vec3<u32>) {
         fanned[first + 7u] = c.y;
         fanned[first + 8u] = c.z;
         painted[at] = colour;
-        rows[at] = 0u;
-        rows[frame.work_count + at] = 0u;
-        rows[opaque + at] = rows_of(min(a.y, min(b.y, c.y)), max(a.y, max(b.y, c.y)));
+        walks[at] = 0u;
+        walks[frame.work_count + at] = 0u;
+        walks[opaque + at] = rows_of(min(a.y, min(b.y, c.y)), max(a.y, max(b.y, c.y)))
+            * stride_of(min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x)));
         b = c;
     }
 }

@@ -22,8 +22,8 @@ use crate::timer::Writes;
 pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub(crate) use ready::Ready;
-pub use work::Work;
-use work::{heights, sampled_rows};
+use work::{Reach, heights};
+pub use work::{WALKED, Work};
 
 /// Who decides coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -69,8 +69,8 @@ pub struct Rasterizer<'g> {
     /// Colour of each triangle.
     pub faces: wgpu::Buffer,
     pub(crate) colours: Vec<[f32; 4]>,
-    /// First and last row with a sample, of each triangle that has any.
-    rows: Vec<Option<[i64; 2]>>,
+    /// Of each triangle that has a sample of the target.
+    reaches: Vec<Option<Reach>>,
     /// The smallest and the largest depth key of a corner.
     depths: [u32; 2],
     target: wgpu::TextureView,
@@ -113,9 +113,9 @@ impl<'g> Rasterizer<'g> {
             size: primitives.size,
             bits,
             samples,
-            rows: corners
+            reaches: corners
                 .iter()
-                .map(|c| sampled_rows(c, bits, height))
+                .map(|c| Reach::of(c, (primitives.size, bits), height))
                 .collect(),
             depths: depths(&corners),
             corners: gpu.upload("corners", &corners)?,
@@ -150,10 +150,11 @@ impl<'g> Rasterizer<'g> {
             source: Vec::new(),
         };
         let faces = vec![[0.0; 4]; triangles.len()];
+        // Only the driver knows where they lie.
+        let everywhere = Reach::whole(size);
         let all = Self::new(gpu, kernels, Path::Fragment, &nothing, &faces)?;
         Ok(Self {
-            // Only the driver knows where they lie.
-            rows: vec![Some([0, i64::from(size.height) - 1]); triangles.len()],
+            reaches: vec![Some(everywhere); triangles.len()],
             handed: Some(gpu.upload("handed", triangles)?),
             early: false,
             ..all
@@ -186,7 +187,7 @@ impl<'g> Rasterizer<'g> {
 
     /// Triangles.
     pub(crate) fn prims(&self) -> u32 {
-        u32::try_from(self.rows.len()).expect("rows of triangles are words")
+        u32::try_from(self.reaches.len()).expect("rows of triangles are words")
     }
 
     /// Depth keys of fragments lie between these.

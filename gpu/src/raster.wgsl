@@ -1,6 +1,6 @@
 // Raster stage: every pixel with a covered sample of every triangle, as a stream, on two paths.
 //
-// Compute: one invocation walks one row of one triangle. Fragment: the hardware
+// Compute: an invocation walks a row of a triangle, or shares it. Fragment: the hardware
 // rasterises the same snapped triangles, the shader evaluates only the key.
 // Twin: spec/src/raster.rs.
 

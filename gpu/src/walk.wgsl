@@ -1,4 +1,5 @@
-// Compute path: a walk over the pixels of one row of which one triangle covers a sample.
+// Compute path: a walk over the pixels of one row of which one triangle covers a sample; where the
+// row is long, over every `stride`th of them.
 //
 //     var walk = start(item);
 //     while advance(&walk) { … walk.fragment … }
@@ -9,18 +10,19 @@ struct Walk {
     setup: Setup,
     x: u32,         // next column to look at
     end: u32,       // one past the last
+    stride: u32,    // from one column to the next
     pixel: u32,     // of column 0, within the band
     ea: Wide,       // edge values at sample 0 of column x, less the least of a covered sample
     eb: Wide,
     ec: Wide,
-    da: Wide,       // their change per column
+    da: Wide,       // their change per stride
     db: Wide,
     dc: Wide,
     fragment: Fragment,
 }
 
-// The row of a triangle that an item stands for: the last triangle of the batch
-// with at most `item` rows before it.
+// The triangle that an item stands for a walk over: the last of the batch with at most `item`
+// walks before it.
 fn find(item: u32) -> u32 {
     var low = frame.work_first;
     var high = frame.work_first + frame.work_count;
@@ -51,15 +53,14 @@ fn start(item: u32) -> Walk {
     let at = find(item);
     let prim = work[at].x;
     let s = prepare(prim);
-    let y = first_row(s) + item - work[at].y;
+    let stride = stride_of(min(s.a.x, min(s.b.x, s.c.x)), max(s.a.x, max(s.b.x, s.c.x)));
+    let own = item - work[at].y;
+    let y = first_row(s) + own / stride;
     let origin = sample_at(0u, y, 0u);
     var walk: Walk;
     walk.setup = s;
     walk.pixel = (y - frame.first_row) * frame.width;
     walk.fragment.prim = prim;
-    walk.da = step_of(s.b, s.c);
-    walk.db = step_of(s.c, s.a);
-    walk.dc = step_of(s.a, s.b);
     let ea = wide_sub(edge(s.b, s.c, origin), wide(least(s.b, s.c)));
     let eb = wide_sub(edge(s.c, s.a, origin), wide(least(s.c, s.a)));
     let ec = wide_sub(edge(s.a, s.b, origin), wide(least(s.a, s.b)));
@@ -67,11 +68,20 @@ fn start(item: u32) -> Walk {
     span = narrow(span, widened(ea, s.b, s.c), s.c.y - s.b.y);
     span = narrow(span, widened(eb, s.c, s.a), s.a.y - s.c.y);
     span = narrow(span, widened(ec, s.a, s.b), s.b.y - s.a.y);
-    walk.x = u32(clamp(span.x, 0.0, f32(frame.width)));
+    // Those that share a row part its columns by their numbers, wherever each has it begin.
+    let begin = u32(clamp(span.x, 0.0, f32(frame.width)));
+    walk.x = begin + ((own - begin) & (stride - 1u));
+    walk.stride = stride;
     walk.end = select(u32(clamp(span.y, 0.0, f32(frame.width))), 0u, s.empty);
-    walk.ea = wide_add(ea, wide_scale(walk.da, walk.x));
-    walk.eb = wide_add(eb, wide_scale(walk.db, walk.x));
-    walk.ec = wide_add(ec, wide_scale(walk.dc, walk.x));
+    let da = step_of(s.b, s.c);
+    let db = step_of(s.c, s.a);
+    let dc = step_of(s.a, s.b);
+    walk.ea = wide_add(ea, wide_scale(da, walk.x));
+    walk.eb = wide_add(eb, wide_scale(db, walk.x));
+    walk.ec = wide_add(ec, wide_scale(dc, walk.x));
+    walk.da = wide_scale(da, stride);
+    walk.db = wide_scale(db, stride);
+    walk.dc = wide_scale(dc, stride);
     return walk;
 }
 
@@ -136,14 +146,14 @@ fn select_wide(a: Wide, b: Wide, condition: bool) -> Wide {
     return a;
 }
 
-// Moves on to the next covered pixel; false at the end of the row.
+// Moves on to the next covered pixel of the walk; false at the end of the row.
 fn advance(walk: ptr<function, Walk>) -> bool {
     while (*walk).x < (*walk).end {
         let x = (*walk).x;
         let ea = (*walk).ea;
         let eb = (*walk).eb;
         let ec = (*walk).ec;
-        (*walk).x = x + 1u;
+        (*walk).x = x + (*walk).stride;
         (*walk).ea = wide_add(ea, (*walk).da);
         (*walk).eb = wide_add(eb, (*walk).db);
         (*walk).ec = wide_add(ec, (*walk).dc);

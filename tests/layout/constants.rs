@@ -7,7 +7,7 @@ use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
 use triptych_gpu::layouts::{BEGINS, ENDS, FOLLOWS, GOES_ON, SAMPLED};
 use triptych_gpu::ldm::{LARGE_AT_ONCE, MAPS_AT_ONCE};
 use triptych_gpu::lists::{LONG, RUN, TILE};
-use triptych_gpu::raster::SATURATED;
+use triptych_gpu::raster::{SATURATED, WALKED};
 use triptych_gpu::tiles::{AS_IT_IS, CONTIGUOUS, FINISHED, IN_MEMORY, IN_ORDER};
 use triptych_gpu::wgsl::network::SIZES;
 use triptych_spec::abuffer::{EOL, NOTHING};
@@ -42,6 +42,7 @@ fn constants_are_those_of_rust() {
         ("GUARD", i64::from(GUARD)),
         ("SATURATED", i64::from(SATURATED)),
         ("WORKGROUP", i64::from(WORKGROUP)),
+        ("WALKED", i64::from(WALKED)),
         ("STEPS", steps),
         ("CORNERS_MAX", corners),
         ("DEPTH_ONE", i64::from(DEPTH_ONE)),

@@ -1,6 +1,6 @@
 //! The vertex stages without the host, set up once and timed: from vertices to what coverage reads.
 //!
-//! A replay has the host make fans of clipped triangles, and share rows of triangles out. Here the
+//! A replay has the host make fans of clipped triangles, and share walks over triangles out. Here the
 //! device does, so that a frame can be timed from its vertices on; what comes of it is the same. Only
 //! how many triangles there are after clipping is known beforehand, from a run of the stages.
 
@@ -75,8 +75,8 @@ impl Passes<'_> {
 }
 
 impl<'g> Timed<'g> {
-    /// Sets them up for a target with these samples, on a sub-pixel grid. With `by_rows` rows of
-    /// triangles are shared out as well, as kernels take them that rasterise by themselves.
+    /// Sets them up for a target with these samples, on a sub-pixel grid. With `walked`, walks
+    /// over triangles are shared out as well, as kernels take them that rasterise by themselves.
     ///
     /// # Errors
     /// More triangles than fit at once, by name; WGSL errors; what the device refuses.
@@ -85,7 +85,7 @@ impl<'g> Timed<'g> {
         kernels: &Kernels,
         scene: &Scene,
         (bits, samples): (u32, Samples),
-        by_rows: bool,
+        walked: bool,
     ) -> Result<Self, GpuError> {
         let clipped = run(gpu, kernels, scene, bits, Given::Nothing, false)?.primitives;
         let most = u64::from(VERTICES);
@@ -129,8 +129,8 @@ impl<'g> Timed<'g> {
         passes.add(("fans", "fan_count"), each, &named)?;
         passes.scan(triangles, [of("fans"), of("offsets"), of("sums")])?;
         passes.add(("fans", "fan_snap"), each, &named)?;
-        if by_rows {
-            passes.scan(slots, [of("rows"), of("starts"), of("sums")])?;
+        if walked {
+            passes.scan(slots, [of("walks"), of("starts"), of("sums")])?;
         }
         Ok(Self {
             gpu,
@@ -162,7 +162,7 @@ impl<'g> Timed<'g> {
         Ok(spans[0])
     }
 
-    /// Corners of each triangle after clipping, and where its rows begin among those of all: first
+    /// Corners of each triangle after clipping, and where its walks begin among those of all: first
     /// the transparent ones', then, counted on, the opaque ones'.
     ///
     /// # Errors
@@ -212,7 +212,7 @@ fn buffers(
             "painted",
             gpu.storage("painted", 16 * u64::from(slots / 2))?,
         ),
-        ("rows", words("rows", slots)?),
+        ("walks", words("walks", slots)?),
         ("starts", words("starts", slots)?),
         ("sums", words("sums", triangles.max(slots).div_ceil(TILE))?),
     ])

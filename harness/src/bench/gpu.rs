@@ -84,9 +84,9 @@ impl<'r> Vertices<'r> {
         } = *start.rasterizer;
         let prims = &start.grid.primitives;
         let grid = (prims.bits, prims.samples);
-        let by_rows = path != Path::Fragment;
+        let walked = path != Path::Fragment;
         Ok(Self {
-            timed: vertex::Timed::new(gpu, kernels, start.scene, grid, by_rows)?,
+            timed: vertex::Timed::new(gpu, kernels, start.scene, grid, walked)?,
             timer: Timer::new(gpu, start.clock, 1)?,
             seconds: Vec::new(),
         })
