@@ -23,7 +23,7 @@ pub use following::{Following, Shading, follow};
 pub use once::{Once, Single, once};
 pub use peeling::{Peeling, Technique, is_wide};
 pub use peels::peel;
-pub use reduced::{Low, Reducing, reduce};
+pub use reduced::{Low, Reduced, Reducing, reduce};
 
 /// What rivals are given.
 #[derive(Clone, Copy)]

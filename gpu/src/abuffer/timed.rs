@@ -17,7 +17,7 @@ use crate::frame::Band;
 use crate::raster::{Attempts, Rasterizer, Ready};
 use crate::timer::Timer;
 pub use part::{KEPT_MAX, Part, can_keep, with_layers};
-use strip::Strip;
+pub(super) use strip::Strip;
 
 /// A frame that is set up. It never overflows: the capacity is that of the spec's count.
 pub struct Timed<'r, 'g> {

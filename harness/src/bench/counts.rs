@@ -23,6 +23,7 @@
 //! | fill: number and triangle, opaque key; list, how far it is filled; rows; entry of `E` bytes | `36 T + 4 B + 28 P + 4 R + E F` | |
 //! | shade: list, surface, picture; rows; entries and colours shown | `36 P + 4 R + E S(n) + 16 H(n)` | |
 //! | of linked lists, in place of rows: a word of a pixel in fill and in shade | `4 P` for `4 R` | |
+//! | reduced to `P'` pixels: all of clear to sorted there; layer and key read, surface, picture | `20 P' + 24 P` | |
 //! | others, each time: triangle with colour, keys, picture; then surface, picture | `60 T + 12 C + 16 P`; `24 P` | |
 //!
 //! What coverage computes is not counted: it is arithmetic. So a frame of small
@@ -168,6 +169,18 @@ impl Counts {
         }
     }
 
+    /// What a target with so few pixels must do for the full one, beside stage opaque there.
+    pub fn reduced(&self, full: &Self) -> Work {
+        let parts = [Part::Clear, Part::Opaque, Part::Build, Part::Sort];
+        let shown = self.work(Part::NearestSorted(self.longest()));
+        let upsampled = Work {
+            bytes: 20 * self.pixels + 24 * full.pixels,
+            atomics: 0,
+        };
+        let lists = parts.into_iter().map(|part| self.work(part));
+        lists.fold(shown.and(upsampled), Work::and)
+    }
+
     /// What techniques beside lists must do, beside stage opaque: going through the triangles
     /// `times` times, each time with the fragments' keys, and through the pixels.
     pub fn gone_through(&self, times: u32) -> Work {
@@ -253,6 +266,13 @@ mod tests {
         assert_eq!(counts.longest(), 5);
         assert_eq!(counts.gone_through(3), must(3 * (120 + 144 + 80) + 120, 0));
         assert_eq!(counts.triangles(), 156);
+        // Clear, opaque, build, sort and sorted as above, of which eleven are shown.
+        let reduced = 60 + 160 + 604 + 1_120 + 140 + 352 + 100 + 24 * 20;
+        let full = Counts {
+            pixels: 20,
+            ..counts.clone()
+        };
+        assert_eq!(counts.reduced(&full), must(reduced, 29));
         assert_eq!(abuffer::bytes([5, 1], 11, false), 140 + 352);
         assert_eq!(abuffer::bytes([5, 1], 11, true), 140 + 352 + 160);
         assert_eq!(abuffer::bytes([5, 4], 11, false), 5 * (4 + 4 * 24) + 352);

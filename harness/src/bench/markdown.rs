@@ -97,8 +97,9 @@ fn how(bench: &Bench) -> [String; 4] {
                    nearest in one walk over the unsorted list, *sort* sorts and stops after n; *tiles*, *linked* and *local* \
                    draw tile by tile, with runs, linked lists, or nothing in memory. Below them, where they were measured, \
                    are depth peeling (*peel*), dual depth peeling (*dual*), the triangles blended as they come (*alpha*), \
-                   weighted blended transparency (*weighted*), and the same lists in other layouts, which the last tables \
-                   explain. A leg is an adapter and a path: *fragment* has the hardware's rasteriser, *compute* and *native* \
+                   weighted blended transparency (*weighted*), fragments at half and at a quarter of the resolution along x and \
+                   y, upsampled by place and depth (*half*, *quarter*), and the same lists in other layouts, which the last \
+                   tables explain. A leg is an adapter and a path: *fragment* has the hardware's rasteriser, *compute* and *native* \
                    ours, with 64-bit integers made of words or the adapter's own; *spec* is one core.";
     let errors = "PSNR is of linear colours with peak 1 against the spec with all layers; *largest* is the largest difference \
                   of a channel; *exact* means no difference at all, and above 100 dB there is only rounding. *Of bound* is \

@@ -35,6 +35,10 @@ pub enum Method {
     Alpha,
     /// Weighted blended transparency.
     Weighted,
+    /// Fragments at half of the resolution along x and y,
+    Half,
+    /// and at a quarter.
+    Quarter,
 }
 
 impl Method {
@@ -58,6 +62,8 @@ impl Method {
             Self::Dual => "dual",
             Self::Alpha => "alpha",
             Self::Weighted => "weighted",
+            Self::Half => "half",
+            Self::Quarter => "quarter",
         }
     }
 
@@ -82,7 +88,10 @@ impl Method {
 
     /// Whether its picture is another than that of the layers in order.
     pub fn approximates(self) -> bool {
-        matches!(self, Self::Alpha | Self::Weighted | Self::Packed)
+        matches!(
+            self,
+            Self::Alpha | Self::Weighted | Self::Packed | Self::Half | Self::Quarter
+        )
     }
 
     /// How it lays the same lists out, if that is all that tells it from others.
@@ -100,7 +109,9 @@ impl Method {
     /// What holds a fragment of a list, if anything does.
     pub fn node(self) -> Option<&'static str> {
         Some(match self {
-            Self::Insertion | Self::Sort | Self::Regions => "key, link, triangle, mask; 4 floats",
+            Self::Insertion | Self::Sort | Self::Regions | Self::Half | Self::Quarter => {
+                "key, link, triangle, mask; 4 floats"
+            }
             Self::Packed => "4 bytes of colour, key, triangle and mask, link",
             Self::Linked => "key, link, triangle, mask",
             Self::Ordered => "key, triangle and mask; link",

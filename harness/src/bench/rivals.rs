@@ -3,6 +3,7 @@
 //! Another one is a line of [`ALL`], and a function that sets it up.
 
 mod layouts;
+mod reduced;
 
 use triptych_gpu::abuffer::rivals::{Once, Peeling, Single, Surfaces, Technique};
 use triptych_gpu::error::GpuError;
@@ -19,6 +20,7 @@ use super::reference::{Grid, Picture};
 use super::scene::Measured;
 use super::{Method, counts::Work};
 use crate::observe::Observed;
+use crate::plan::Plan;
 use crate::replay::spec::SpecRun;
 
 /// What one technique is, and how it is set up.
@@ -33,6 +35,8 @@ pub(super) const ALL: &[Kind] = &[
     kind(Method::Dual, dual),
     kind(Method::Alpha, alpha),
     kind(Method::Weighted, weighted),
+    kind(Method::Half, |given| given.reduced(1)),
+    kind(Method::Quarter, |given| given.reduced(2)),
     kind(Method::Packed, |given| given.laid_out(Layout::Packed)),
     kind(Method::Regions, |given| given.laid_out(Layout::Regions)),
     kind(Method::Ordered, |given| given.laid_out(Layout::Ordered)),
@@ -53,8 +57,7 @@ pub(super) struct Given<'r> {
     pub(super) scene: &'r Scene,
     /// The spec of the whole target.
     pub(super) run: &'r SpecRun,
-    /// Whether fragments behind opaque surfaces are left out of lists.
-    pub(super) depth_test: bool,
+    pub(super) plan: &'r Plan,
     /// Whatever it takes.
     pub(super) all: bool,
 }
@@ -282,3 +285,6 @@ impl<'r> Beside<'r> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

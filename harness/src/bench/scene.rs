@@ -229,7 +229,7 @@ fn grids<'s>(
 fn leg<'r>(
     prepared: &'r Prepared<'r>,
     (loaded, asked): (&'r Loaded, &Asked),
-    plan: &Plan,
+    plan: &'r Plan,
     options: &Options,
     done: &mut Done,
 ) -> Option<Leg<'r>> {
@@ -268,7 +268,7 @@ fn leg<'r>(
             grid,
             scene,
             run,
-            depth_test: plan.depth_test,
+            plan,
             all: options.rivals,
         };
         for kind in rivals::ALL {

@@ -12,16 +12,16 @@ use crate::frame::{Band, Frame};
 use crate::raster::{Path, Rasterizer, Ready};
 
 /// A band, with passes for each part of the frame; a part without any has no time here.
-pub(super) struct Strip {
-    pub(super) frame: Frame,
+pub(in crate::abuffer) struct Strip {
+    pub(in crate::abuffer) frame: Frame,
     pub(super) band: Band,
-    pub(super) parts: Vec<(Part, Vec<Ready>)>,
+    pub(in crate::abuffer) parts: Vec<(Part, Vec<Ready>)>,
     built: usize,
 }
 
 impl Strip {
     /// What builds the lists of a band, with room for so many nodes.
-    pub(super) fn new(
+    pub(in crate::abuffer) fn new(
         rasterizer: &Rasterizer<'_>,
         options: &Options<'_>,
         (band, capacity): (Band, u32),
@@ -67,7 +67,7 @@ impl Strip {
     }
 
     /// Adds what follows lists of up to `longest` nodes.
-    pub(super) fn follow(
+    pub(in crate::abuffer) fn follow(
         &mut self,
         rasterizer: &Rasterizer<'_>,
         buffers: &Buffers,

@@ -60,7 +60,7 @@ impl<'r> Given<'r> {
         let (run, grid) = (self.run, self.grid);
         let options = Options {
             opaque: &run.opaque,
-            depth_test: self.depth_test,
+            depth_test: self.plan.depth_test,
             background: self.scene.background,
             capacity: None,
             arrays: None,
