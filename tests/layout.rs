@@ -213,7 +213,7 @@ fn baseline_programs_need_no_capability() {
         // The two forms differ, so that both are tested: 64-bit integers prove it.
         let wide = |t: &naga::Type| matches!(t.inner, TypeInner::Scalar(s) if s.width == 8);
         let has_wide = root.program.module.types.iter().any(|(_, t)| wide(t));
-        let narrow = ["ceiling", "fan", "hbao", "vertex"];
+        let narrow = ["ceiling", "fan_scan", "hbao", "vertex"];
         let expects_wide = root.native && !narrow.iter().any(|n| root.name.starts_with(n));
         assert_eq!(has_wide, expects_wide, "64-bit integers in {}", root.name);
     }

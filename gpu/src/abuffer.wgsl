@@ -56,7 +56,7 @@ fn first(fragment: Fragment) {
 
 // The samples of a fragment in front of the opaque surfaces there.
 fn visible(fragment: Fragment) -> u32 {
-    if frame.depth_test == 0u {
+    if frame.depth_test == 0u || fragment.mask == 0u {
         return fragment.mask;
     }
     var mask = fragment.mask;

@@ -3,12 +3,12 @@
 // as without it.
 //
 // A triangle has one depth, that of its nearest corner, so that nothing follows from how a driver interpolates
-// across a slope. Depths are keys as f32: conversion keeps the order of two keys, or makes them one.
+// across a slope. Depths are keys as f32, which rounds them by less than 2^7.
 //#import abuffer
 
 // Keys that a triangle is taken to be nearer than it is. A driver that interpolates between three equal depths
 // may be off by some units of 2^-24 if its weights do not add up to 1: this is 4,096 of them, and leaves a
-// 4,096th of all depths to the exact key.
+// 4,096th of all depths to the exact key. What keys are rounded by is far less.
 const DEPTH_MARGIN: i32 = 1 << 19u;
 
 fn depth_of(key: u32) -> f32 {
@@ -32,6 +32,10 @@ fn place_everywhere(@builtin(vertex_index) index: u32) -> @builtin(position) vec
 @fragment
 fn opaque_depth_fragment(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
     let pixel = vec2<u32>(position.xy);
+    // As in drawn_samples.wgsl: a driver may draw rows that lie beyond the scissor rectangle.
+    if pixel.y - frame.first_row >= frame.rows {
+        return 1.0;
+    }
     let first = frame.samples * ((pixel.y - frame.first_row) * frame.width + pixel.x);
     var farthest = 0u;
     for (var s = 0u; s < frame.samples; s += 1u) {

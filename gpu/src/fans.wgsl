@@ -3,6 +3,7 @@
 // Twin: `append_fans` in vertex.rs and `sampled_rows` and `stride` in raster/work.rs.
 
 //#import vertex
+//#import stride
 
 // Triangles of the fan of each.
 @group(0) @binding(9) var<storage, read_write> fans: array<u32>;
@@ -46,6 +47,20 @@ fn rows_of(low: i32, high: i32) -> u32 {
     return u32(max(bottom - top + 1, 0));
 }
 
+fn double_area(a: vec3<i32>, b: vec3<i32>, c: vec3<i32>) -> Wide {
+    let area = wide_sub(wide_mul(b.x - a.x, c.y - a.y), wide_mul(b.y - a.y, c.x - a.x));
+    if wide_negative(area) {
+        return wide_sub(wide(0), area);
+    }
+    return area;
+}
+
+fn walks_of(a: vec3<i32>, b: vec3<i32>, c: vec3<i32>) -> u32 {
+    let low = min(a.y, min(b.y, c.y));
+    let high = max(a.y, max(b.y, c.y));
+    return rows_of(low, high) * stride_of(double_area(a, b, c), high - low);
+}
+
 // Each triangle's fan, from where `offsets` has it begin. `work_count` is all that there are.
 @compute @workgroup_size(WORKGROUP)
 fn fan_snap(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -77,8 +92,7 @@ fn fan_snap(@builtin(global_invocation_id) id: vec3<u32>) {
         painted[at] = colour;
         walks[at] = 0u;
         walks[frame.work_count + at] = 0u;
-        walks[opaque + at] = rows_of(min(a.y, min(b.y, c.y)), max(a.y, max(b.y, c.y)))
-            * stride_of(min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x)));
+        walks[opaque + at] = walks_of(a, b, c);
         b = c;
     }
 }

@@ -31,7 +31,7 @@ pub struct Frame {
     pub work_first: u32,
     /// Entries of the batch.
     pub work_count: u32,
-    /// Rows of triangles in the batch: invocations of a compute kernel.
+    /// Walks over rows of triangles in the batch: invocations of a compute kernel.
     pub items: u32,
     /// First column of the guard rectangle.
     pub guard_x: i32,

@@ -27,21 +27,6 @@ struct Frame {
 // Side of the guard rectangle, pixels.
 const GUARD: i32 = 4096;
 
-// Columns of a row that an invocation walks at most.
-const WALKED: u32 = 64u;
-
-// How many invocations share each row of a triangle that lies between two sub-pixels; each takes one
-// column of so many. A power of two, and 0 if no column of the target is between them. Twin: `stride`
-// in raster/work.rs.
-fn stride_of(low: i32, high: i32) -> u32 {
-    let begin = clamp(low >> frame.bits, 0, i32(frame.width));
-    let end = clamp((high >> frame.bits) + 1, 0, i32(frame.width));
-    if end <= begin {
-        return 0u;
-    }
-    return 1u << (32u - countLeadingZeros((u32(end - begin) - 1u) / WALKED));
-}
-
 fn band_pixels() -> u32 {
     return frame.width * frame.rows;
 }

@@ -22,7 +22,7 @@ use crate::timer::Writes;
 pub use attempts::{Attempts, MEMORY, Need, SATURATED};
 pub use cover::{Covered, cover};
 pub(crate) use ready::Ready;
-use work::{Reach, heights};
+pub(crate) use work::{Reach, heights};
 pub use work::{WALKED, Work};
 
 /// Who decides coverage.
@@ -69,7 +69,7 @@ pub struct Rasterizer<'g> {
     /// Colour of each triangle.
     pub faces: wgpu::Buffer,
     pub(crate) colours: Vec<[f32; 4]>,
-    /// Of each triangle that has a sample of the target.
+    /// Of each triangle that has a sample.
     reaches: Vec<Option<Reach>>,
     /// The smallest and the largest depth key of a corner.
     depths: [u32; 2],

@@ -7,7 +7,7 @@
 // Nine numbers a triangle: x, y in sub-pixels and the depth key of each corner.
 @group(0) @binding(1) var<storage, read> corners: array<i32>;
 
-// The triangles to draw: x is a triangle, y the rows of all triangles of the
+// The triangles to draw: x is a triangle, y the walks over all triangles of the
 // batch that come before it.
 @group(0) @binding(2) var<storage, read> work: array<vec2<u32>>;
 

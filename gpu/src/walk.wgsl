@@ -5,6 +5,7 @@
 //     while advance(&walk) { … walk.fragment … }
 
 //#import triangle
+//#import stride
 
 struct Walk {
     setup: Setup,
@@ -53,7 +54,8 @@ fn start(item: u32) -> Walk {
     let at = find(item);
     let prim = work[at].x;
     let s = prepare(prim);
-    let stride = stride_of(min(s.a.x, min(s.b.x, s.c.x)), max(s.a.x, max(s.b.x, s.c.x)));
+    let height = max(s.a.y, max(s.b.y, s.c.y)) - min(s.a.y, min(s.b.y, s.c.y));
+    let stride = stride_of(s.area, height);
     let own = item - work[at].y;
     let y = first_row(s) + own / stride;
     let origin = sample_at(0u, y, 0u);

@@ -10,9 +10,14 @@ use triptych_spec::vertex::{DEPTH_ONE, GUARD, Primitives, guard_origin};
 /// Corners of a triangle: x and y in sub-pixels, z key.
 pub type Triangle = [[i32; 3]; 3];
 
-/// Targets small enough to look at every sample of them.
+/// Targets small enough to look at every sample of them; some are so wide that several invocations
+/// share a row of a triangle.
 pub fn size() -> impl Strategy<Value = Size> {
-    (1_u32..=20, 1_u32..=20).prop_map(|(width, height)| Size { width, height })
+    prop_oneof![
+        4 => (1_u32..=20, 1_u32..=20),
+        1 => (65_u32..=300, 1_u32..=4),
+    ]
+    .prop_map(|(width, height)| Size { width, height })
 }
 
 /// Around a target's side: anywhere, on centres and borders of pixels, at the end of

@@ -77,7 +77,7 @@ fn blended(text: &mut String, module: &Module, entry: &str, arguments: &str) {
 fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
     let inputs = inputs(module, entry);
     let given: Vec<String> = inputs.iter().map(|input| argument(*input)).collect();
-    // Of the rivals, what goes through the triangles has rows of them.
+    // Of the rivals, what goes through the triangles has walks over them.
     let walks = [
         "peel_nearest",
         "peel_first",

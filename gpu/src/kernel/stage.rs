@@ -17,12 +17,13 @@ pub struct Stage {
     pub contract: &'static str,
 }
 
-const ROW: &str = "Compute: item `i` below frame.items is a row of a triangle, or its share of \
-    one: of the last entry of `work` from frame.work_first, frame.work_count of them, whose y is \
-    at most i; its x is the triangle, whose corners are nine numbers of `corners`. Of its items, \
-    which begin at that y, stride_of(least x, largest x) at a time share a row, from first_row \
-    on, and take one column of so many each. Fragment: the hardware's rasteriser calls it for \
-    every covered pixel, with the triangle at location 0.";
+const ROW: &str = "Compute: item `i` below frame.items is a row of a triangle, or a share of one: \
+    of the last entry of `work` from frame.work_first, frame.work_count of them, whose y is at \
+    most i; its x is the triangle, whose corners are nine numbers of `corners`. Of its items, \
+    which begin at that y, so many share each row as stride_of of stride.wgsl says, from the row \
+    of the band on that first_row of walk.wgsl says, and take one column of so many each. \
+    Fragment: the hardware's rasteriser calls it for every covered pixel, with the triangle at \
+    location 0.";
 
 impl Stage {
     /// The stage of this name.

@@ -20,14 +20,21 @@ impl Rasterizer<'_> {
         self.early && self.kernels.is_ours("build_fragment") && frame.depth_test != 0
     }
 
-    /// Makes the target's depth, unless it is there.
-    fn make_depth(&self) -> Result<(), GpuError> {
-        if self.depth.get().is_none() {
-            let format = ("depth", DEPTH_FORMAT, 4);
-            let made = texture(self.gpu, format, self.size, self.samples.count())?;
-            self.depth.get_or_init(|| made);
+    /// Makes the target's depth, unless it is there; whether there is room for it.
+    fn has_depth(&self) -> Result<bool, GpuError> {
+        if self.depth.get().is_some() {
+            return Ok(true);
         }
-        Ok(())
+        let format = ("depth", DEPTH_FORMAT, 4);
+        match texture(self.gpu, format, self.size, self.samples.count()) {
+            Ok(made) => {
+                self.depth.get_or_init(|| made);
+                Ok(true)
+            }
+            // Bands share the target's depth: smaller ones need no less.
+            Err(GpuError::Memory { .. }) => Ok(false),
+            Err(error) => Err(error),
+        }
     }
 
     /// The passes that build the lists of a band, whose opaque surfaces are known: one for each batch, and
@@ -38,10 +45,10 @@ impl Rasterizer<'_> {
         work: &Work,
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Vec<Ready>, GpuError> {
-        if !self.tests_early(&frame) || work.batches.is_empty() {
+        let tested = self.tests_early(&frame) && !work.batches.is_empty();
+        if !tested || !self.has_depth()? {
             return self.ready("abuffer", "build", frame, work, buffers);
         }
-        self.make_depth()?;
         let file = match self.samples.count() {
             1 => "early",
             _ => "early_samples",

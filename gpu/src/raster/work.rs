@@ -10,12 +10,12 @@ use crate::frame::{Band, WORKGROUP};
 /// Most walks of one dispatch (WebGPU: 65,535 workgroups).
 const ITEMS_MAX: u32 = 65_535 * WORKGROUP;
 
-/// Columns of a row that an invocation walks at most.
+/// Columns of a triangle's longest row that an invocation walks at most.
 pub const WALKED: u32 = 64;
 
-/// What a triangle may cover of a target.
+/// The walks over a triangle.
 #[derive(Clone, Copy)]
-pub(super) struct Reach {
+pub(crate) struct Reach {
     /// First and last row with a sample.
     rows: [i64; 2],
     /// Walks over each row.
@@ -23,20 +23,19 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// That of a triangle; `None` if it has no sample of the target.
-    pub(super) fn of(
+    /// Those over a triangle; `None` if it has no sample.
+    pub(crate) fn of(
         corners: &[[i32; 3]; 3],
         (size, bits): (Size, u32),
         heights: [i64; 2],
     ) -> Option<Self> {
-        let rows = sampled_rows(corners, bits, heights)?;
-        let x = corners.map(|c| i64::from(c[0]));
-        let reach = [x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])];
-        let stride = stride(reach, bits, size.width);
-        (stride > 0).then_some(Self { rows, stride })
+        Some(Self {
+            rows: sampled_rows(corners, bits, heights)?,
+            stride: stride(corners, bits, size.width),
+        })
     }
 
-    /// All of the target.
+    /// Of what may lie anywhere on a target.
     pub(super) fn whole(size: Size) -> Self {
         Self {
             rows: [0, i64::from(size.height) - 1],
@@ -44,20 +43,25 @@ impl Reach {
         }
     }
 
-    /// Walks over the rows of a band.
-    fn walks(self, band: Band) -> u32 {
+    /// Those over the rows of a band.
+    pub(crate) fn walks(self, band: Band) -> u32 {
         rows_within(self.rows, band) * self.stride
     }
 }
 
-/// How many invocations share each row of a triangle that lies between two sub-pixels; each
-/// takes one column of so many. A power of two, and 0 if no column of the target is between
-/// them. Twin: `stride_of` in frame.wgsl.
-fn stride([low, high]: [i64; 2], bits: u32, width: u32) -> u32 {
-    let within = |column: i64| column.clamp(0, i64::from(width));
-    let columns = within((high >> bits) + 1) - within(low >> bits);
-    let walks = u32::try_from(columns).unwrap_or(0).div_ceil(WALKED);
-    walks.min(1) * walks.next_power_of_two()
+/// How many invocations share each row of a triangle on a target of this width: a power of two,
+/// and each takes one column of so many. Its longest row is twice its area over its height.
+/// Twin: `stride_of` in stride.wgsl.
+fn stride(corners: &[[i32; 3]; 3], bits: u32, width: u32) -> u32 {
+    let [a, b, c] = corners.map(|corner| corner.map(i64::from));
+    let double_area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+    let height = a[1].max(b[1]).max(c[1]) - a[1].min(b[1]).min(c[1]);
+    let most = height * i64::from(WALKED << bits);
+    let mut stride = 1;
+    while stride * WALKED < width && most * i64::from(stride) < double_area {
+        stride *= 2;
+    }
+    stride
 }
 
 /// A work list and its batches.
@@ -73,7 +77,7 @@ pub(super) struct Batch {
 }
 
 /// How far down from a pixel's top its highest and its lowest sample are, in sub-pixels.
-pub(super) fn heights(samples: Samples, bits: u32) -> [i64; 2] {
+pub(crate) fn heights(samples: Samples, bits: u32) -> [i64; 2] {
     let down = || samples.offsets(bits).map(|[_, down]| down);
     [down().min(), down().max()].map(|end| end.expect("a pixel has a sample"))
 }

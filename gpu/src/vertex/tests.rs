@@ -1,9 +1,12 @@
 use triptych_spec::matrix::Matrix;
+use triptych_spec::raster::Samples;
 use triptych_spec::scene::{Size, Triangle, Vertex};
 
 use super::stages::VERTICES;
 use super::*;
 use crate::context::adapters;
+use crate::frame::Band;
+use crate::raster::{Reach, heights};
 use crate::wgsl::Sources;
 
 /// Every Vulkan adapter with kernels.
@@ -38,7 +41,7 @@ fn spiral(triangles: u32, spare: u32) -> Scene {
         colour: [1.0; 4],
     };
     Scene {
-        samples: triptych_spec::raster::Samples::ONE,
+        samples: Samples::ONE,
         order: triptych_spec::abuffer::Order::Centroid,
         size: Size {
             width: 64,
@@ -154,32 +157,38 @@ fn a_scene_without_triangles_or_vertices_gives_nothing() {
     }
 }
 
-/// Walks over a triangle: rows of pixels whose middles lie within its height, times how many
-/// share a row of as many columns as it touches, 64 columns or fewer each.
-fn walks(corners: &[[i32; 3]; 3], bits: u32, size: Size) -> u32 {
-    let across = |axis: usize| {
-        let all = corners.map(|corner| corner[axis]);
-        all[0].min(all[1]).min(all[2])..=all[0].max(all[1]).max(all[2])
+/// Walks over a triangle: rows in which a sample lies within its height, times how many share its
+/// longest row, 64 columns or fewer each, as far as a target is so wide.
+fn walks(corners: &[[i32; 3]; 3], (bits, samples): (u32, Samples), size: Size) -> u32 {
+    let down: Vec<i64> = samples.offsets(bits).map(|[_, down]| down).collect();
+    let [a, b, c] = corners.map(|corner| corner.map(i64::from));
+    let ends = [a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1])];
+    let within = |row: &i64| {
+        let sample = |down: &i64| (row << bits) + down;
+        let lies = |below: fn(i64, i64) -> bool, end| down.iter().any(|d| below(sample(d), end));
+        lies(|y, top| y >= top, ends[0]) && lies(|y, bottom| y <= bottom, ends[1])
     };
-    let (x, y) = (across(0), across(1));
-    let rows = (0..size.height.cast_signed())
-        .filter(|row| y.contains(&((row << bits) + (1 << (bits - 1)))))
-        .count();
-    let columns = (0..size.width.cast_signed())
-        .filter(|column| *x.start() < (column + 1) << bits && column << bits <= *x.end())
-        .count();
-    let sharing = [0, 1, 2, 4, 8, 16, 32].map(|n| 64 * n);
-    let sharing = sharing.iter().find(|most| **most >= columns);
-    u32::try_from(rows * sharing.expect("2,048 or fewer") / 64).expect("a target's")
+    let rows = (0..i64::from(size.height)).filter(within).count();
+    // Through the middle corner in height.
+    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let longest = area.abs() as f64 / ((ends[1] - ends[0]).max(1) << bits) as f64;
+    let longest = longest.min(size.width.into());
+    let sharing = [1, 2, 4, 8, 16, 32].into_iter();
+    let sharing = sharing.filter(|n| f64::from(*n) * 64.0 >= longest).min();
+    let rows = u32::try_from(rows).expect("a target's");
+    let walks = rows * sharing.expect("2,048 columns or fewer");
+    let host = Reach::of(corners, (size, bits), heights(samples, bits));
+    assert_eq!(host.map_or(0, |host| host.walks(Band::whole(size))), walks);
+    walks
 }
 
 /// Whether corners and walks of what is timed are what the host makes of the same stages.
-fn as_the_host(gpu: &Gpu, kernels: &Kernels, scene: &Scene) -> [bool; 2] {
+fn as_the_host(gpu: &Gpu, kernels: &Kernels, scene: &Scene, samples: Samples) -> [bool; 2] {
     let must = run(gpu, kernels, scene, 8, Given::Nothing, false).expect("small");
     let must = must.primitives;
     let corner = |at: u32| must.snapped[at as usize];
     let corners: Vec<[[i32; 3]; 3]> = must.prims.iter().map(|p| p.map(corner)).collect();
-    let grid = (8, triptych_spec::raster::Samples::ONE);
+    let grid = (8, samples);
     let timed = Timed::new(gpu, kernels, scene, grid, true).expect("small");
     let (fanned, starts) = timed.made().expect("it runs");
     let mut sum = 0;
@@ -188,7 +197,7 @@ fn as_the_host(gpu: &Gpu, kernels: &Kernels, scene: &Scene) -> [bool; 2] {
         for (corners, source) in corners.iter().zip(&must.source) {
             begins.push(sum);
             let own = scene.triangles[*source as usize].is_opaque() == opaque;
-            sum += u32::from(own) * walks(corners, 8, scene.size);
+            sum += u32::from(own) * walks(corners, grid, scene.size);
         }
     }
     assert!(sum > 300, "{sum} walks");
@@ -202,17 +211,20 @@ fn as_the_host(gpu: &Gpu, kernels: &Kernels, scene: &Scene) -> [bool; 2] {
 fn fans_and_walks_are_made_without_the_host() {
     let mut scene = spiral(300, 1);
     scene.size.width = 1_200;
+    // Some reach far across.
+    for vertex in scene.vertices.iter_mut().step_by(9) {
+        vertex.position[0] = -0.25;
+    }
     for triangle in scene.triangles.iter_mut().step_by(2) {
         triangle.colour[3] = 0.5;
     }
     let sources = Sources::shipped(false);
     for (gpu, kernels) in devices(&sources) {
-        assert_eq!(
-            as_the_host(&gpu, &kernels, &scene),
-            [true; 2],
-            "{}",
-            gpu.name
-        );
+        for samples in [1, 4, 8] {
+            let samples = Samples::standard(samples).expect("a pattern");
+            let seen = as_the_host(&gpu, &kernels, &scene, samples);
+            assert_eq!(seen, [true; 2], "{}", gpu.name);
+        }
     }
     for (file, find, replace, wrong) in [
         ("fans", "offsets[t] + i - 2u", "offsets[t]", 0),
@@ -223,13 +235,18 @@ fn fans_and_walks_are_made_without_the_host() {
             "max(bottom - top, 0)",
             1,
         ),
-        ("frame", "(high >> frame.bits) + 1", "high >> frame.bits", 1),
-        ("frame", "- 1u) / WALKED", "- 1u) / (2u * WALKED)", 1),
+        ("fans", "return wide_sub(wide(0), area);", "return area;", 1),
+        (
+            "stride",
+            "wide_less(wide_scale(most, stride), double_area)",
+            "false",
+            1,
+        ),
     ] {
         let patched = sources.patched(file, find, replace);
         let patched = patched.unwrap_or_else(|error| panic!("{error}"));
         for (gpu, kernels) in devices(&patched) {
-            let seen = as_the_host(&gpu, &kernels, &scene);
+            let seen = as_the_host(&gpu, &kernels, &scene, Samples::ONE);
             assert!(!seen[wrong], "{find:?} is not seen on {}", gpu.name);
         }
     }

@@ -101,6 +101,7 @@ const FILES: &[(&str, &str)] = shipped![
     "sorted",
     "steps",
     "steps_samples",
+    "stride",
     "surface",
     "sweep",
     "texel",

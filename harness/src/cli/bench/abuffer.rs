@@ -47,7 +47,7 @@ pub struct Args {
     /// The paper's Table 1 and Figure 4 alone, or beside the scenes that are named
     #[arg(long)]
     paper: bool,
-    /// Nothing but fragments: 64 full layers, and 2^30 fragments on a board
+    /// Nothing but fragments: 64 full layers, 64 of which a wall hides 56, and 2^30 fragments on a board
     #[arg(long)]
     full: bool,
     /// Rounds that count, after two, and a second of each adapter, to warm up [default: 21, and 5

@@ -72,8 +72,8 @@ pub fn too_many_steps(spec: &SpecRun, path: Path) -> Option<String> {
 }
 
 /// The most steps of an invocation along lists that are in order: one for each node, and one where
-/// another invocation was first to hang a node there. It has a fragment, and on the compute paths all of a
-/// row of a triangle.
+/// another invocation was first to hang a node there. It has a fragment, and on the compute paths no more
+/// than all of a row of a triangle.
 fn steps_of_an_invocation(spec: &SpecRun, path: Path) -> u64 {
     let pixels = 0..spec.sorted.offsets.len() - 1;
     let steps = |pixel: usize| 2 * spec.sorted.list(pixel).len() as u64;

@@ -28,7 +28,8 @@ const NOTE: &str = "The same fragments of one view, stored in several ways; list
     *Node*: what holds a fragment. *B/fragment*: bytes of it, where arrays are merged those of both; *wanted*: the most \
     that they were to be, 16 of linked nodes and 8 of arrays. *Memory*: all buffers of a frame at once. *PSNR* and \
     *largest* difference are from the exact picture: colours of a byte a channel are an approximation.\n\n\
-    *insertion*, *sort*: linked lists, one counter for all nodes, colours of full precision beside them. *regions*: the \
+    *insertion*, *sort*: linked lists, one counter for all nodes, colours of full precision beside them; on the fragment \
+    path they alone are built behind a test of depth, where the adapter has one and something is opaque. *regions*: the \
     same with 64 counters, each with nodes of its own. *packed*: nodes of 16 bytes with a byte for each channel; heads \
     need no clearing. *ordered*: in order while they are built, by atomic minima. *linked*: by tiles of 8 x 8 pixels, \
     a counter for each. *precalc*: counted first, then runs of one array. *bucket*: an array as long as the longest list \
