@@ -2,13 +2,39 @@
 //! by.
 
 use triptych_gpu::frame::Band;
-use triptych_spec::abuffer::Sorted;
+use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::raster::Fragment;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
 
+use super::gpu::Refusal;
+use crate::compare::{compare, order};
+use crate::observe::{Gpu, Observed, Spec};
+
 /// Fragments of all rows that are looked at, about.
 const LOOKED_AT: u64 = 1 << 23;
+
+/// Whether lists of a target of some width are sorted as the spec sorts them.
+///
+/// # Errors
+/// How many are not, and the first of them.
+pub(super) fn in_order(
+    what: &str,
+    (must, width): (&Sorted, u32),
+    lists: &Lists,
+) -> Result<(), Refusal> {
+    let must = Observed::<Spec, _>::new("spec", must);
+    let seen = Observed::<Gpu, _>::new(what, lists);
+    let judgement = compare(&must, &seen, |a, b| order::compare(a, b, width));
+    if judgement.differ() == 0 && judgement.compared > 0 {
+        return Ok(());
+    }
+    let (differ, unit) = (judgement.differ(), judgement.unit);
+    let first = judgement.described.first().cloned().unwrap_or_default();
+    Err(Refusal::Wrong(format!(
+        "{what}: {differ} {unit} differ; {first}"
+    )))
+}
 
 /// The rows that are looked at, of a target with so many fragments in each: as many as hold
 /// [`LOOKED_AT`] together, at least one, one by one and evenly apart.

@@ -10,8 +10,9 @@ use triptych_spec::vertex::{Primitives, primitives};
 use super::counts::{Counted, Counts};
 use super::error::{Error, psnr};
 use super::gpu::Refusal;
-use super::pieces::{common, from_row, lists_of_rows, looked_at, of_rows, sorted_rows, within};
-use crate::compare::order;
+use super::pieces::{
+    common, from_row, in_order, lists_of_rows, looked_at, of_rows, sorted_rows, within,
+};
 use crate::compare::{compare, image};
 use crate::observe::{Gpu, Observed, Spec};
 use crate::plan::Plan;
@@ -234,17 +235,8 @@ impl Grid {
             let width = self.primitives.size.width;
             let must: Sorted = sorted_rows(&piece.run.sorted, within(rows, piece.band), width);
             lists.heads = lists_of_rows(&heads, within(rows, band), width);
-            let must = Observed::<Spec, _>::new("spec", &must);
-            let seen = Observed::<Gpu, _>::new(label, &lists);
-            let judgement = compare(&must, &seen, |a, b| order::compare(a, b, width));
-            if judgement.differ() > 0 || judgement.compared == 0 {
-                let (differ, unit) = (judgement.differ(), judgement.unit);
-                let first = judgement.described.first().cloned().unwrap_or_default();
-                let rows = from_row(rows);
-                return Err(Refusal::Wrong(format!(
-                    "{label}, sorted lists{rows}: {differ} {unit} differ; {first}"
-                )));
-            }
+            let what = format!("{label}, sorted lists{}", from_row(rows));
+            in_order(&what, (&must, width), &lists)?;
         }
         Ok(())
     }

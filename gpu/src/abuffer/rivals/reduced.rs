@@ -1,19 +1,17 @@
 //! Fragments at a reduced resolution: their lists blended there, and what the full one shows of them.
 
-mod frame;
+mod timed;
 
 use std::time::{Duration, Instant};
 
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::{Lists, Opaque, Reduction};
 
-use super::{
-    Given, Rival, Surfaces, by_name, frame as frame_of, image, read_lists, run_through, whole,
-};
+use super::{Given, Rival, Surfaces, by_name, frame, image, read_lists, run_through, whole};
 use crate::abuffer::STEPS;
 use crate::error::GpuError;
 use crate::raster::Rasterizer;
-pub use frame::Reduced;
+pub use timed::Reduced;
 
 /// What kernels are told of a reduction. Twin: `Reduction` in `reduced.wgsl`.
 #[repr(C)]
@@ -83,7 +81,7 @@ pub fn reduce(
         ("reduction", &reducing),
     ];
     named.extend(surfaces.named());
-    let above = frame_of(full, band, given.background);
+    let above = frame(full, band, given.background);
     let below = low.rasterizer.take_passes();
     let show = |stage| -> Result<Rival, GpuError> {
         let pass = full.ready_per_pixel("reduced", stage, above, &named)?;
@@ -123,7 +121,7 @@ fn blend(low: Low<'_, '_>, given: Given<'_>) -> Result<Blended, GpuError> {
     let surfaces = Surfaces::upload(rasterizer, low.opaque, band)?;
     let mut named: Vec<_> = own.iter().map(|(name, buffer)| (*name, buffer)).collect();
     named.extend(surfaces.named());
-    let frame = frame_of(rasterizer, band, given.background);
+    let frame = frame(rasterizer, band, given.background);
     let ready = |stage| rasterizer.ready_per_pixel("reduced", stage, frame, &named);
     let mut passes = vec![ready("reduced_clear")?];
     for _ in 0..=u64::from(low.layers) / STEPS {

@@ -5,15 +5,16 @@ use triptych_gpu::abuffer::{NODE, Options};
 use triptych_gpu::error::GpuError;
 use triptych_gpu::raster::{Path, Rasterizer};
 use triptych_gpu::timer::Timer;
-use triptych_spec::abuffer::{self, Order, Reduction, Upsampling};
+use triptych_spec::abuffer::{self, Reduction, Upsampling};
 use triptych_spec::bound::Bounded;
 
 use super::{Given, Made, Runs};
+use crate::bench::Method;
 use crate::bench::counts::Counts;
 use crate::bench::gpu::Refusal;
+use crate::bench::pieces::in_order;
 use crate::compare::lists::certify;
-use crate::compare::{compare, order};
-use crate::observe::{Gpu, Observed, Spec};
+use crate::observe::Observed;
 use crate::replay::spec::SpecRun;
 
 /// Where a scene states no falloff: a neighbour counts half as much if its surface is a 64th of the depth
@@ -51,7 +52,7 @@ impl Runs for Low<'_> {
 
 impl<'r> Given<'r> {
     /// Sets up a resolution that is halved so often, whose lists must be the spec's.
-    pub(super) fn reduced(&self, halvings: u32) -> Result<Made<'r>, Refusal> {
+    pub(super) fn reduced(&self, method: Method, halvings: u32) -> Result<Made<'r>, Refusal> {
         if self.rasterizer.path == Path::Fragment {
             let words = "hardware has no grid as fine as that of the reduced pixels";
             return Err(Refusal::Skipped(words.to_owned()));
@@ -79,7 +80,7 @@ impl<'r> Given<'r> {
             frame: self.frame(reduction, &few, counts.longest())?,
             triangles: counts.triangles(),
         };
-        self.judge(halvings, &few, &low)?;
+        self.judge(method, &few, &low)?;
         let work = counts.reduced(&self.grid.counts);
         Ok(Made {
             run: Box::new(low),
@@ -101,14 +102,8 @@ impl<'r> Given<'r> {
         let low = Rasterizer::new(gpu, kernels, path, &few.primitives, &few.faces)?;
         let nodes = u32::try_from(few.sorted.fragments.len()).expect("a replay's are words");
         let options = Options {
-            given: None,
             capacity: Some(nodes),
-            opaque: self.plan.opaque,
-            lists: true,
-            depth_test: self.plan.depth_test,
-            order: Order::Centroid,
-            once: false,
-            background: self.scene.background,
+            ..self.plan.abuffer(self.scene)
         };
         let is_opaque = |prim| few.is_opaque(prim);
         let how = (reduction, longest);
@@ -118,25 +113,15 @@ impl<'r> Given<'r> {
     }
 
     /// Whether the lists are sound, all there, and in the spec's order.
-    fn judge(&self, halvings: u32, few: &SpecRun, low: &Low<'_>) -> Result<(), Refusal> {
+    fn judge(&self, method: Method, few: &SpecRun, low: &Low<'_>) -> Result<(), Refusal> {
         let lists = low.frame.lists()?;
-        let what = format!("{}, lists of {} x less", self.label, 1 << halvings);
+        let what = format!("{}, {}, sorted lists", self.label, method.name());
         let (seen, must) = (u64::from(lists.attempts), few.sorted.fragments.len() as u64);
         if seen != must || !certify(&lists).is_sound() {
             let words = format!("{what}: {seen} fragments, must be {must} in sound lists");
             return Err(Refusal::Wrong(words));
         }
-        let width = few.primitives.size.width;
-        let must = Observed::<Spec, _>::new("spec", &few.sorted);
-        let seen = Observed::<Gpu, _>::new(what.clone(), &lists);
-        let judgement = compare(&must, &seen, |a, b| order::compare(a, b, width));
-        if judgement.differ() > 0 || judgement.compared == 0 {
-            let (differ, unit) = (judgement.differ(), judgement.unit);
-            let first = judgement.described.first().cloned().unwrap_or_default();
-            let words = format!("{what}: {differ} {unit} differ; {first}");
-            return Err(Refusal::Wrong(words));
-        }
-        Ok(())
+        in_order(&what, (&few.sorted, few.primitives.size.width), &lists)
     }
 
     /// What the spec makes of the reduced target's lists.

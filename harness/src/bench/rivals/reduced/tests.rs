@@ -17,7 +17,7 @@ fn reduced_frames_that_are_wrong_are_named() {
                 "f32(place) * weight_of(key, guide[at])",
                 "f32(place)",
             ),
-            ["leg, half", "leg, quarter"],
+            ["leg, half: ", "leg, quarter: "],
         ),
         (
             (
@@ -25,7 +25,7 @@ fn reduced_frames_that_are_wrong_are_named() {
                 "return x.key < y.key ||",
                 "return x.key > y.key ||",
             ),
-            ["leg, lists of 2 x less", "leg, lists of 4 x less"],
+            ["leg, half, sorted lists", "leg, quarter, sorted lists"],
         ),
     ] {
         let patched = ships.patched(file, find, replace);
