@@ -69,7 +69,7 @@ pub struct Node {
 }
 
 /// Heads, nodes and the counter that hands out node addresses (sections 3, 3.1).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lists {
     /// First node of each pixel's list, or [`EOL`].
     pub heads: Vec<u32>,

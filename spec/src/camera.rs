@@ -108,6 +108,25 @@ impl Camera {
         })
     }
 
+    /// From the middle of the picture to the middles of its right and upper sides, and straight
+    /// ahead: of a perspective at distance 1, of an orthographic view as large as it is.
+    ///
+    /// # Errors
+    /// Those of [`Camera::matrix`].
+    pub fn axes(&self, aspect: f64) -> Result<[[f64; 3]; 3], CameraError> {
+        self.matrix(aspect)?;
+        let [right, up, back, _] = self.view()?.rows.map(|[x, y, z, _]| [x, y, z]);
+        let half = match self.projection {
+            Projection::Perspective { fov } => libm::tan(fov.to_radians() / 2.0),
+            Projection::Orthographic { height } => height / 2.0,
+        };
+        Ok([
+            right.map(|c| c * half * aspect),
+            up.map(|c| c * half),
+            back.map(|c| -c),
+        ])
+    }
+
     fn projection(&self, aspect: f64) -> Matrix {
         let (n, f) = (self.near, self.far);
         match self.projection {

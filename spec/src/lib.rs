@@ -17,11 +17,13 @@
 //! | [`grid`] | count, scan, fill, link, trace | `gpu/src/grid.wgsl` |
 //! | [`rsm`] | gbuffer, rsm, place, direct, gather, block, blur, compose | `gpu/src/rsm.wgsl` |
 //! | [`ldm`] | layers, chain, neighbours, occlusion, environment | `gpu/src/ldm.wgsl` |
+//! | [`dispatch`] | primary, intersect, locate, light, reflect, deposit | `gpu/src/dispatch.wgsl` |
 #![forbid(unsafe_code)]
 
 pub mod abuffer;
 pub mod bound;
 pub mod camera;
+pub mod dispatch;
 pub mod grid;
 pub mod layouts;
 pub mod ldm;

@@ -8,12 +8,15 @@
 //! negative their sum is the area, so depth numerators stay below 2^71. `i64` and
 //! `i128` hold them. Twin: `gpu/src/raster.wgsl`.
 
+mod count;
 mod depth;
 mod multisample;
 mod samples;
 
 use crate::scene::Size;
 use crate::vertex::Primitives;
+pub use count::count;
+use count::reaches;
 use depth::Depth;
 pub use multisample::sample_nodes;
 pub use samples::{SAMPLES_MAX, Samples, samples_of};
@@ -202,7 +205,8 @@ pub fn cover_only(
     mut emit: impl FnMut(Fragment),
 ) {
     let (size, bits) = (primitives.size, primitives.bits);
-    for prim in (0..column(primitives.prims.len() as i64)).filter(|prim| select(*prim)) {
+    let all = 0..column(primitives.prims.len() as i64);
+    for prim in all.filter(|prim| reaches(primitives, *prim) && select(*prim)) {
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };
@@ -243,26 +247,6 @@ pub fn cover_only(
             }
         }
     }
-}
-
-/// How many fragments [`cover`] emits, without evaluating them.
-pub fn count(primitives: &Primitives) -> u64 {
-    let (size, bits) = (primitives.size, primitives.bits);
-    let fragments = |prim| {
-        let setup = Setup::new(primitives, prim)?;
-        if primitives.samples.count() > 1 {
-            let mut fragments = 0;
-            for row in setup.rows_of_samples(primitives) {
-                setup.masks(row, primitives, |_, _| fragments += 1);
-            }
-            return Some(fragments);
-        }
-        let span = |row| setup.span(row, size, bits).len() as u64;
-        Some(setup.rows(size, bits).map(span).sum::<u64>())
-    };
-    (0..column(primitives.prims.len() as i64))
-        .filter_map(fragments)
-        .sum()
 }
 
 /// Where the middle of a column (row), its only sample if it has one, lies in sub-pixels.

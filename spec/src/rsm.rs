@@ -52,13 +52,16 @@ pub use direct::{Direct, direct};
 pub use frame::{Frame, Setting};
 pub use gather::gather;
 pub use kernel::{faces, term, texels};
+pub(crate) use kernel::{projected, squared};
 pub use lamp::{Lamp, Light, Rsm, rsm};
+pub(crate) use model::sound;
 pub use model::{COARSE_BITS, Face, Model};
 pub use parameters::{
     BIAS_MAX, BITS_MAX, BLUR_MAX, DIVISOR_MAX, EDGE_MAX, OFFSET_MAX, OFFSET_MIN, Parameters,
     RADIUS_MAX, STRIDE_MAX,
 };
 pub use place::{PLACE_MAX, Place, place, project};
+pub(crate) use point::moved_off;
 pub use point::{Gbuffer, Surface, gbuffer};
 pub use same::same;
 pub use view::{View, Viewpoint};

@@ -12,7 +12,7 @@ use crate::matrix::Matrix;
 use crate::raster::Samples;
 use crate::scene::{Scene, Size};
 
-pub use clip::{Plane, clip, clip_triangle};
+pub use clip::{Plane, clip, clip_run, clip_triangle};
 
 /// Side of the guard rectangle in pixels. Nothing outside it is ever handed to a
 /// rasteriser, so no driver clips, and every later product has a known size.
@@ -41,6 +41,24 @@ pub struct Polygons<T> {
     pub offsets: Vec<u32>,
     /// Corners in order.
     pub corners: Vec<Position<T>>,
+}
+
+impl<T: Copy> Polygons<T> {
+    /// None at all.
+    pub fn none() -> Self {
+        Self {
+            offsets: vec![0],
+            corners: Vec::new(),
+        }
+    }
+
+    /// Adds those of the triangles that follow.
+    pub fn append(&mut self, next: &Self) {
+        let before = row(self.corners.len());
+        self.corners.extend(&next.corners);
+        self.offsets
+            .extend(next.offsets[1..].iter().map(|end| before + end));
+    }
 }
 
 /// Triangles on the grid: what the raster stage starts from.

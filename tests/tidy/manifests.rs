@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use super::{assert_none, root};
 
 /// The workspace's members.
-const MEMBERS: [&str; 4] = ["gpu", "harness", "spec", "tests"];
+const MEMBERS: [&str; 5] = ["gpu", "harness", "spec", "tests", "tests/models"];
 
 fn manifest(folder: &str) -> Table {
     let path = root().join(folder).join("Cargo.toml");
@@ -37,6 +37,8 @@ fn targets_of(member: &str) -> Vec<String> {
             });
         }
     }
+    let build = manifest["package"].get("build").and_then(Value::as_str);
+    targets.extend(build.map(|build| format!("{member}/{build}")));
     let library = manifest.get("lib").and_then(|lib| lib.get("path"));
     let library = library.and_then(Value::as_str).unwrap_or("src/lib.rs");
     let library = format!("{member}/{library}");

@@ -120,10 +120,16 @@ fn every_wgsl_file_is_reached() {
         let in_place = format!("{import} for ");
         let leads = |line: &str| line == import || line.starts_with(&in_place);
         let imported = files.iter().any(|f| f.text().lines().any(leads));
-        // What a variant has in place of an import: pixels with several samples ask for it.
-        let variant = ["drawn", "covered"].iter().any(|name| {
+        // What a variant has in place of an import: pixels with several samples ask for it, or rays
+        // whose nearest triangles must be the spec's.
+        let places = [
+            ("drawn_samples", "drawn"),
+            ("covered_samples", "covered"),
+            ("first_exact", "first"),
+        ];
+        let variant = places.iter().any(|(own, other)| {
             file.text()
-                .contains(&format!("//#import {name}_samples for {name}"))
+                .contains(&format!("//#import {own} for {other}"))
         });
         let stands_in = ["remove", "get"]
             .iter()

@@ -53,6 +53,29 @@ pub fn layers(maps: &Maps, blockers: &Blockers) -> Result<Layers, LdmError> {
 }
 
 impl Layers {
+    /// Of no map.
+    pub fn none() -> Self {
+        Self {
+            offsets: vec![0],
+            keys: Vec::new(),
+        }
+    }
+
+    /// Adds the lists of the maps that follow.
+    ///
+    /// # Errors
+    /// More than [`KEYS_MAX`] keys together.
+    pub fn append(&mut self, next: Self) -> Result<(), LdmError> {
+        let before = self.keys.len() as u64;
+        let total = before + next.keys.len() as u64;
+        within("the number of keys", total, 0, KEYS_MAX.into())?;
+        let before = u32::try_from(before).expect("at most KEYS_MAX");
+        let ends = next.offsets.into_iter().skip(1);
+        self.offsets.extend(ends.map(|end| before + end));
+        self.keys.extend(next.keys);
+        Ok(())
+    }
+
     /// One map more, of so many pixels; pixels and keys in order.
     fn add(&mut self, pixels: u32, found: &[(u32, u32)]) {
         let mut rest = found;

@@ -69,7 +69,7 @@ pub fn term(model: &Model, to: &Surface, light: &Light, clamp: u64) -> Option<Co
 }
 
 /// A difference along the unit normal on the side that is seen, not negative.
-pub(super) fn projected(model: &Model, surface: &Surface, d: Point) -> Bounded {
+pub(crate) fn projected(model: &Model, surface: &Surface, d: Point) -> Bounded {
     let side = f64::from(surface.side);
     let unit = model.face(surface.triangle).unit;
     dot(unit.map(|c| side * f64::from(c)), d).at_least(0.0)
@@ -77,7 +77,7 @@ pub(super) fn projected(model: &Model, surface: &Surface, d: Point) -> Bounded {
 
 /// The squared length of a difference, or `least` if that is more. The larger of the two is
 /// rounded to `f32` in either case.
-pub(super) fn squared(d: Point, least: u64) -> Bounded {
+pub(crate) fn squared(d: Point, least: u64) -> Bounded {
     let length = dot(d.map(f64::from), d);
     // Up to 3 * 2^48, which `f64` holds; a kernel has it rounded once.
     let least = least as f64;

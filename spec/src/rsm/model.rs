@@ -117,7 +117,7 @@ impl Model {
 }
 
 /// An error unless light of that colour may exist.
-pub(super) fn sound(colour: [f32; 3]) -> Result<(), RsmError> {
+pub(crate) fn sound(colour: [f32; 3]) -> Result<(), RsmError> {
     let wrong = |c: &f32| !(c.is_finite() && *c >= 0.0);
     colour
         .into_iter()

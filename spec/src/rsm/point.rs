@@ -73,7 +73,13 @@ pub fn gbuffer(model: &Model, view: &View, parameters: &Parameters) -> Gbuffer {
 
 /// Moves a point along the longest component of the face's normal to one side. Does not
 /// move it for a triangle without area.
-fn moved_off(model: &Model, triangle: u32, side: i32, mut point: Point, by: u32) -> Point {
+pub(crate) fn moved_off(
+    model: &Model,
+    triangle: u32,
+    side: i32,
+    mut point: Point,
+    by: u32,
+) -> Point {
     let face = model.face(triangle);
     let axis = face.axis();
     let way = match face.normal[axis].signum() {

@@ -2,7 +2,7 @@
 
 use super::{CORNERS_MAX, GUARD, Polygons, Position, guard_origin, row};
 use crate::bound::Real;
-use crate::scene::{Scene, Size};
+use crate::scene::{Scene, Size, Triangle};
 
 /// A half-space that clipping keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,12 +56,19 @@ impl Plane {
 /// An edge's new point is computed from its two ends in an order that does not
 /// depend on the triangle, so that neighbours get the same point, to the bit.
 pub fn clip<T: Real>(scene: &Scene, positions: &[Position<T>]) -> Polygons<T> {
-    let planes = Plane::all(scene.size);
-    let mut polygons = Polygons {
-        offsets: vec![0],
-        corners: Vec::new(),
-    };
-    for triangle in &scene.triangles {
+    clip_run(scene.size, &scene.triangles, positions)
+}
+
+/// [`clip`] of some of a scene's triangles, whose polygons those of others may follow
+/// ([`Polygons::append`]).
+pub fn clip_run<T: Real>(
+    size: Size,
+    triangles: &[Triangle],
+    positions: &[Position<T>],
+) -> Polygons<T> {
+    let planes = Plane::all(size);
+    let mut polygons = Polygons::none();
+    for triangle in triangles {
         let corners = triangle.vertices.map(|v| positions[v as usize]);
         let polygon = clip_triangle(&planes, corners, |_, plain| plain);
         polygons.corners.extend(polygon);

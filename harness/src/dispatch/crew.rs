@@ -1,0 +1,267 @@
+//! Threads that are all alike, and the frames that they work on (paper listings 2 and 3).
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Barrier, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::queue::outstanding::Outstanding;
+use super::queue::{Queue, Worker};
+
+/// When a thread takes a frame to be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// When nothing is in the queue at this moment, as in the paper. Others may still add tasks,
+    /// which they then do themselves.
+    Empty,
+    /// When no task is left: neither in the queue nor in anybody's hands.
+    Counted,
+}
+
+impl Ending {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Empty, Self::Counted];
+
+    /// A word for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Empty => "empty",
+            Self::Counted => "counted",
+        }
+    }
+}
+
+/// What threads did with their time, summed up over frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Spent {
+    /// From a thread's last task of a frame to the frame's end, and while it found the queue empty.
+    pub idle: Duration,
+    /// Within the queue's operations, those aside that found it empty.
+    pub access: Duration,
+    /// Tasks that it did.
+    pub tasks: u64,
+}
+
+/// How a crew works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crew {
+    /// How many threads; at least one.
+    pub threads: usize,
+    /// When a thread takes a frame to be done.
+    pub ending: Ending,
+    /// Whether to look at the clock around every operation of the queue.
+    pub watched: bool,
+}
+
+/// A thread's way to the queue: what a task may add tasks with.
+pub struct Hands<'a, W> {
+    worker: W,
+    outstanding: Option<&'a Outstanding>,
+    watched: bool,
+    access: Duration,
+}
+
+impl<W> Hands<'_, W> {
+    /// Adds a task; somebody will do it within this frame.
+    pub fn add<T>(&mut self, task: T)
+    where
+        W: Worker<T>,
+    {
+        if let Some(outstanding) = self.outstanding {
+            outstanding.add(1);
+        }
+        let start = self.watched.then(Instant::now);
+        self.worker.add(task);
+        self.access += start.map_or(Duration::ZERO, |start| start.elapsed());
+    }
+
+    /// Takes a task, and when that began if the clock is looked at.
+    fn get<T>(&mut self) -> (Option<T>, Option<Instant>)
+    where
+        W: Worker<T>,
+    {
+        let start = self.watched.then(Instant::now);
+        let task = self.worker.get();
+        if task.is_some() {
+            self.access += start.map_or(Duration::ZERO, |start| start.elapsed());
+        }
+        (task, start)
+    }
+}
+
+/// What the threads of a crew share while they work.
+struct Shared<'a, Q, W> {
+    queue: &'a Q,
+    work: W,
+    crew: Crew,
+    outstanding: Outstanding,
+    barrier: Barrier,
+    /// The paper's `END`.
+    over: AtomicBool,
+    /// What a task panicked with; the frame is then given up.
+    panic: Mutex<Option<Box<dyn Any + Send>>>,
+    given_up: AtomicBool,
+}
+
+impl Crew {
+    /// A crew that ends frames by counting and looks at no clock.
+    pub fn new(threads: usize) -> Self {
+        Self {
+            threads,
+            ending: Ending::Counted,
+            watched: false,
+        }
+    }
+
+    /// Does some tasks, and those that they add, and returns when all are done.
+    ///
+    /// # Panics
+    /// With what a task panics with.
+    pub fn run<T: Send, Q: Queue<T>>(
+        self,
+        queue: &Q,
+        tasks: impl IntoIterator<Item = T>,
+        work: impl Fn(&mut Hands<'_, Q::Worker<'_>>, T) + Sync,
+    ) -> Vec<Spent> {
+        let mut tasks = Some(tasks);
+        self.frames(queue, || tasks.take(), work, || ())
+    }
+
+    /// The application's loop (listing 3): `first` gives the tasks that a frame begins with, or
+    /// `None` after the last one, and is asked for them while threads work on the frame before (its
+    /// `application_logic2`); `finish` is called at the end of each, while all threads wait. What each
+    /// thread spent, in order of their numbers.
+    ///
+    /// # Panics
+    /// With what a task panics with.
+    pub fn frames<T: Send, Q: Queue<T>, I: IntoIterator<Item = T>>(
+        self,
+        queue: &Q,
+        mut first: impl FnMut() -> Option<I>,
+        work: impl Fn(&mut Hands<'_, Q::Worker<'_>>, T) + Sync,
+        mut finish: impl FnMut(),
+    ) -> Vec<Spent> {
+        assert!(self.threads > 0, "a crew has at least one thread");
+        let shared = Shared {
+            queue,
+            work,
+            crew: self,
+            outstanding: Outstanding::new(),
+            barrier: Barrier::new(self.threads + 1),
+            over: AtomicBool::new(false),
+            panic: Mutex::new(None),
+            given_up: AtomicBool::new(false),
+        };
+        thread::scope(|scope| {
+            let shared = &shared;
+            let threads = 0..self.threads;
+            let threads: Vec<_> = threads
+                .map(|number| scope.spawn(move || shared.thread(number)))
+                .collect();
+            let mut next = first();
+            while let Some(tasks) = next {
+                queue.deal(tasks.into_iter().inspect(|_| shared.dealt()));
+                shared.barrier.wait();
+                next = first();
+                shared.barrier.wait();
+                if shared.given_up.load(Ordering::Relaxed) {
+                    break;
+                }
+                finish();
+            }
+            shared.over.store(true, Ordering::Relaxed);
+            shared.barrier.wait();
+            let joined = threads.into_iter().map(|thread| thread.join());
+            let spent = joined.map(|spent| spent.unwrap_or_else(|panic| resume_unwind(panic)));
+            let spent = spent.collect();
+            if let Some(panic) = shared.panicked().take() {
+                resume_unwind(panic);
+            }
+            spent
+        })
+    }
+}
+
+impl<Q, W> Shared<'_, Q, W> {
+    /// A task is about to be in the queue.
+    fn dealt(&self) {
+        if self.crew.ending == Ending::Counted {
+            self.outstanding.add(1);
+        }
+    }
+
+    fn panicked(&self) -> MutexGuard<'_, Option<Box<dyn Any + Send>>> {
+        self.panic.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A thread's loop (listing 2). A task that panics must not leave the others at the
+    /// barrier: the thread goes there as well, and the application panics in its place.
+    fn thread<T: Send>(&self, number: usize) -> Spent
+    where
+        Q: Queue<T>,
+        W: for<'w> Fn(&mut Hands<'_, Q::Worker<'w>>, T) + Sync,
+    {
+        let mut spent = Spent::default();
+        loop {
+            self.barrier.wait();
+            if self.over.load(Ordering::Relaxed) {
+                return spent;
+            }
+            let frame = AssertUnwindSafe(|| self.frame(number, &mut spent));
+            let last = catch_unwind(frame).unwrap_or_else(|panic| {
+                self.panicked().get_or_insert(panic);
+                self.given_up.store(true, Ordering::Relaxed);
+                None
+            });
+            self.barrier.wait();
+            spent.idle += last.map_or(Duration::ZERO, |last| last.elapsed());
+        }
+    }
+
+    /// A thread's part of a frame; when it was done with it, if the clock is looked at.
+    fn frame<T: Send>(&self, number: usize, spent: &mut Spent) -> Option<Instant>
+    where
+        Q: Queue<T>,
+        W: for<'w> Fn(&mut Hands<'_, Q::Worker<'w>>, T) + Sync,
+    {
+        let counted = self.crew.ending == Ending::Counted;
+        let mut hands = Hands {
+            worker: self.queue.worker(number),
+            outstanding: counted.then_some(&self.outstanding),
+            watched: self.crew.watched,
+            access: Duration::ZERO,
+        };
+        let mut found_nothing = 0_u32;
+        while !self.given_up.load(Ordering::Relaxed) {
+            let (task, start) = hands.get();
+            let Some(task) = task else {
+                if !counted || self.outstanding.is_over() {
+                    break;
+                }
+                found_nothing += 1;
+                wait(found_nothing);
+                spent.idle += start.map_or(Duration::ZERO, |start| start.elapsed());
+                continue;
+            };
+            found_nothing = 0;
+            (self.work)(&mut hands, task);
+            if counted {
+                self.outstanding.done(1);
+            }
+            spent.tasks += 1;
+        }
+        spent.access += hands.access;
+        self.crew.watched.then(Instant::now)
+    }
+}
+
+/// A moment, longer for whoever has found nothing for a while: there may be fewer cores than
+/// threads, and somebody's task then waits for one.
+fn wait(times: u32) {
+    match times {
+        0..16 => std::hint::spin_loop(),
+        _ => thread::yield_now(),
+    }
+}

@@ -1,0 +1,95 @@
+//! A frame's loop over the queue without locks, as the engine has it, with tasks that have
+//! children.
+
+use super::held::Held;
+use super::lfree::Lfree;
+use super::outstanding::Outstanding;
+use super::sync::{Shim, UnsafeCell};
+use crate::support::how::{Checker, Count, How};
+use crate::support::traits::Queue;
+
+/// When a thread's frame ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// As in listing 2: the queue is empty at this moment.
+    Empty,
+    /// All tasks are done.
+    Counted,
+}
+
+/// Tasks of the model: the first has the others for children.
+const TASKS: usize = 3;
+
+struct Frame {
+    queue: Lfree<usize, Held<super::node::Node<usize>>>,
+    outstanding: Outstanding,
+    /// What each task writes, once.
+    written: [UnsafeCell<usize>; TASKS],
+}
+
+// SAFETY: the checker watches the cells, and fails where two threads meet.
+#[expect(unsafe_code, reason = "a model's cells")]
+unsafe impl Sync for Frame {}
+
+impl Frame {
+    /// Whether this thread left while there was something to do.
+    #[expect(unsafe_code, reason = "a model's cells")]
+    fn work(&self, rule: Rule, thread: usize) -> bool {
+        let worker = self.queue.worker(thread);
+        loop {
+            if let Some(task) = worker.get() {
+                // SAFETY: the checker fails if another thread has it.
+                self.written[task].with_mut(|written| unsafe { *written += 1 });
+                let children = if task == 0 { 1..TASKS } else { 0..0 };
+                self.outstanding.add(children.len());
+                children.for_each(|child| worker.add(child));
+                self.outstanding.done(1);
+            } else if rule == Rule::Empty {
+                return !self.outstanding.is_over();
+            } else if self.outstanding.is_over() {
+                for written in &self.written {
+                    // SAFETY: as above.
+                    let times = written.with(|written| unsafe { *written });
+                    assert_eq!(times, 1, "a task was done {times} times when all was over");
+                }
+                return false;
+            } else {
+                Shim::pause();
+            }
+        }
+    }
+}
+
+/// Schedules in which some thread left early.
+pub fn run(rule: Rule, threads: usize, how: How, count: &Count) -> usize {
+    let early = Count::default();
+    let left = early.clone();
+    Shim::explore(how, count, move || {
+        let frame: &'static Frame = Box::leak(Box::new(Frame {
+            queue: Lfree::with(Held::new()),
+            outstanding: Outstanding::new(),
+            written: std::array::from_fn(|_| UnsafeCell::new(0)),
+        }));
+        frame.outstanding.add(1);
+        frame.queue.deal([0]);
+        let others: Vec<_> = (1..threads)
+            .map(|t| Shim::spawn(move || frame.work(rule, t)))
+            .collect();
+        let mut any = frame.work(rule, 0);
+        for other in others {
+            any |= Shim::join(other);
+        }
+        assert!(
+            frame.outstanding.is_over(),
+            "all have left, and tasks are left"
+        );
+        if any {
+            left.one();
+        }
+        // SAFETY: it is the box that was leaked above, and the threads have ended.
+        #[expect(unsafe_code, reason = "a model's threads borrow from it")]
+        drop(unsafe { Box::from_raw((&raw const *frame).cast_mut()) });
+        crate::support::heap::end(false);
+    });
+    early.get()
+}
