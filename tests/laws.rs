@@ -45,6 +45,11 @@
 //! | `ldm::frames` | frames together are their sum, and fit; the more, the nearer to what is exact |
 //! | `ldm::symmetry` | everything turned together; directions and their opposites |
 //! | `ldm::loose` | whatever WGSL allows stays inside the bounds |
+//! | `dispatch::points` | ray tracing: points and mirror directions from their definitions; weights and units |
+//! | `dispatch::eyes` | rays go through the middles of pixels |
+//! | `dispatch::pictures` | no order of tasks or triangles matters, no way of searching, nor where the world is |
+//! | `dispatch::adapters`, `dispatch::extremes` | random worlds and rays give the spec's rays to the bit, and its light within bounds, on every adapter; queues that overflow |
+//! | `dispatch::early`, `dispatch::halves` | what `f32` has too early, points at halves, lamps in a face's plane |
 //! | `gpu` | random triangles give the same fragments, lists and rivals on every adapter and path |
 //!
 //! The seed is fixed, so that every run tries the same cases. To try others:
@@ -59,6 +64,8 @@ mod adapters;
 mod bound;
 #[path = "laws/camera.rs"]
 mod camera;
+#[path = "laws/dispatch.rs"]
+mod dispatch;
 #[path = "laws/gpu.rs"]
 mod gpu;
 #[path = "laws/grid.rs"]

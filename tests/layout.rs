@@ -16,12 +16,13 @@ use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::wgsl::{Linked, Program, Sources};
 
 /// The files with entry points.
-const ROOTS: [&str; 31] = [
+const ROOTS: [&str; 32] = [
     "abuffer",
     "alpha",
     "ceiling",
     "defocus",
     "density",
+    "dispatch",
     "dual",
     "early",
     "fan_scan",
@@ -51,9 +52,10 @@ const ROOTS: [&str; 31] = [
 ];
 
 /// The files that have entry points of others, with other imports.
-const VARIANTS: [&str; 6] = [
+const VARIANTS: [&str; 7] = [
     "abuffer_samples",
     "early_samples",
+    "grid_exact",
     "linked_samples",
     "local_samples",
     "raster_samples",

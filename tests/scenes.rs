@@ -195,30 +195,31 @@ fn judge(outcome: &Outcome, adapters: &[Adapter]) -> Vec<String> {
     wrong
 }
 
+/// Families with scenes of their own, and a stage that they alone have.
+const OWN: [(&str, &str, Chain); 4] = [
+    ("grid", "trace", Chain::Rays),
+    ("rsm", "gather", Chain::Indirect),
+    ("ldm", "layers", Chain::Maps),
+    ("dispatch", "locate", Chain::Traced),
+];
+
 /// As what a scene was replayed, by its passes.
 fn chain_of(outcome: &Outcome) -> Chain {
     let has = |stage: &str| outcome.passes.iter().any(|pass| pass.name == stage);
-    match (has("trace"), has("gather"), has("layers")) {
-        (true, ..) => Chain::Rays,
-        (_, true, _) => Chain::Indirect,
-        (.., true) => Chain::Maps,
-        _ => Chain::Frame,
-    }
+    let found = OWN.into_iter().find(|(_, stage, _)| has(stage));
+    found.map_or(Chain::Frame, |(.., chain)| chain)
 }
 
 /// The folder says what a scene is for.
 fn misplaced(outcome: &Outcome, chain: Chain) -> Vec<String> {
-    let own = [
-        ("grid", Chain::Rays),
-        ("rsm", Chain::Indirect),
-        ("ldm", Chain::Maps),
-    ];
-    let strange = |(family, its_own): &(&str, Chain)| {
+    let strange = |(family, _, its_own): &(&str, &str, Chain)| {
         let mut rows = outcome.rows.iter();
         rows.any(|r| (r.family == *family) != (chain == *its_own))
     };
-    let told = |(name, _)| format!("a scene has [{name}] if and only if its family is {name}");
-    own.into_iter().filter(strange).map(told).collect()
+    let told = |(name, ..): (&str, &str, Chain)| {
+        format!("a scene has [{name}] if and only if its family is {name}")
+    };
+    OWN.into_iter().filter(strange).map(told).collect()
 }
 
 fn describe(row: &Row) -> String {

@@ -15,6 +15,7 @@ use triptych_spec::grid::ray::Ray;
 pub use device::Device;
 pub(crate) use room::Room;
 pub use stages::Stages;
+pub(crate) use stages::fresh;
 pub use timed::{Shape, Span, Timed};
 
 /// Kernels that put long lists in order.
@@ -99,11 +100,11 @@ pub struct Hit {
 /// A ray as kernels read it. Twin: `Ray` in `ray.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct Packed {
-    origin: [f32; 3],
-    segment: u32,
-    direction: [f32; 3],
-    owner: u32,
+pub(crate) struct Packed {
+    pub(crate) origin: [f32; 3],
+    pub(crate) segment: u32,
+    pub(crate) direction: [f32; 3],
+    pub(crate) owner: u32,
 }
 
 impl From<&Ray> for Packed {
@@ -117,7 +118,16 @@ impl From<&Ray> for Packed {
     }
 }
 
+/// Rays on the device, what they have met, and how many there are: the first four words for a
+/// dispatch, workgroups along three axes and rays.
+#[derive(Clone, Copy)]
+pub(crate) struct Counted<'b> {
+    pub(crate) rays: &'b wgpu::Buffer,
+    pub(crate) hits: &'b wgpu::Buffer,
+    pub(crate) arguments: &'b wgpu::Buffer,
+}
+
 /// Lattice points have 24 bits, which `f32` holds.
-fn exact(point: Point) -> [f32; 3] {
+pub(crate) fn exact(point: Point) -> [f32; 3] {
     point.map(|c| c as f32)
 }

@@ -15,10 +15,10 @@ use bytemuck::{Pod, Zeroable};
 use triptych_spec::ldm::Falloff;
 
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::kernel::Kernels;
+use crate::ready::Ready;
 use crate::timer::Timer;
 
 pub use screen::{Pixel, Screen};

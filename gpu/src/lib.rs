@@ -8,7 +8,7 @@
 pub mod abuffer;
 pub mod ceiling;
 pub mod context;
-mod dispatch;
+pub mod dispatch;
 pub mod error;
 pub mod frame;
 pub mod grid;
@@ -20,6 +20,7 @@ pub mod lists;
 mod named;
 pub mod pass;
 pub mod raster;
+mod ready;
 pub mod rsm;
 pub mod tiles;
 pub mod timer;

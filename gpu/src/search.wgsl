@@ -2,6 +2,7 @@
 //#import march
 //#import bricks
 //#import meet
+//#import first
 //#import word
 //#import runs
 
@@ -52,7 +53,7 @@ fn traced(ray: Ray, given: Hit) -> Hit {
         while hit.at >= end && steps < STEPS {
             steps += 1u;
             if hit.at != EOL {
-                if ends(ray, hit, soonest(march.exit)) {
+                if ends(ray, hit, surely(soonest(march.exit))) {
                     return hit;
                 }
                 march = stepped(way, march);
@@ -84,7 +85,7 @@ fn traced(ray: Ray, given: Hit) -> Hit {
         steps += looked.at - hit.at;
         hit.at = looked.at;
         if looked.meeting.verdict == MET {
-            hit = nearer(hit, looked.meeting.time, looked.prim);
+            hit = nearer(ray, hit, looked.meeting.time, looked.prim);
             if cells.any == 1u {
                 return hit;
             }
@@ -100,7 +101,7 @@ fn traced(ray: Ray, given: Hit) -> Hit {
 fn over_brick(ray: Ray, hit: Hit, way: Way, cell: vec3<i32>) -> vec3<i32> {
     let last = last_of_brick(cell, way.up);
     let exit = exits(way, last);
-    if ends(ray, hit, soonest(exit)) {
+    if ends(ray, hit, surely(soonest(exit))) {
         return vec3(-1);
     }
     return past_brick(way, cell, last, exit);
@@ -135,10 +136,4 @@ fn looked_through(ray: Ray, start: u32, end: u32) -> Looked {
 // Whether nothing after a cell's exit can change the answer.
 fn ends(ray: Ray, hit: Hit, exit: f32) -> bool {
     return hit.time < exit || (ray.segment == 1u && exit > 1.0);
-}
-
-// The first of two; the smaller id of two at a time.
-fn nearer(hit: Hit, time: f32, prim: u32) -> Hit {
-    let is_first = time < hit.time || (time == hit.time && prim < hit.prim);
-    return Hit(select(hit.prim, prim, is_first), select(hit.time, time, is_first), hit.state, hit.at);
 }

@@ -34,7 +34,7 @@ fn wide_is_zero(a: Wide) -> bool {
 }
 
 // The full product of two unsigned words, from four products of half words.
-fn wide_mul_words(a: u32, b: u32) -> Wide {
+fn wide_mul_words(a: u32, b: u32) -> vec2<u32> {
     let a0 = a & 0xffffu;
     let a1 = a >> 16u;
     let b0 = b & 0xffffu;
@@ -94,4 +94,9 @@ fn wide_signed_to_f32(a: Wide) -> f32 {
         return -wide_to_f32(wide_sub(wide(0), a));
     }
     return wide_to_f32(a);
+}
+
+// The words, low one first.
+fn wide_words(a: Wide) -> vec2<u32> {
+    return a;
 }

@@ -70,3 +70,15 @@ fn wide_to_f32(a: Wide) -> f32 {
 fn wide_signed_to_f32(a: Wide) -> f32 {
     return f32(a);
 }
+
+// The words, low one first.
+fn wide_words(a: Wide) -> vec2<u32> {
+    let words = u64(a);
+    return vec2(u32(words & 0xfffffffflu), u32(words >> 32u));
+}
+
+// The full product of two unsigned words.
+fn wide_mul_words(a: u32, b: u32) -> vec2<u32> {
+    let product = u64(a) * u64(b);
+    return vec2(u32(product & 0xfffffffflu), u32(product >> 32u));
+}

@@ -20,6 +20,7 @@
 pub mod ceiling;
 pub mod counts;
 pub mod csv;
+pub mod dispatch;
 pub mod error;
 pub mod full;
 mod gpu;
@@ -38,6 +39,7 @@ mod rows;
 pub mod rsm;
 mod run;
 mod scene;
+pub mod share;
 mod spec;
 pub mod spread;
 mod station;

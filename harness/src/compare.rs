@@ -1,6 +1,7 @@
 //! Comparers: each takes two differently labelled observations and says what was
 //! compared, what differs, and why.
 
+pub mod dispatch;
 pub mod embree;
 pub mod fragments;
 pub mod grid;

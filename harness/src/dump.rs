@@ -45,8 +45,18 @@
 //! | `ldm-F/depth` | u32, k | depth keys, rising in each list |
 //! | `ldm-F/hits` | i32, r × n × 3 | of each receiver in each map: its own key, the key before it and the one behind it; -1 for none. Left out where there are more than 2^24 |
 //! | `ldm-F/whole` | u32, r | the sum of the weights of what is open, in 2^-19 |
+//! | `dispatch/lattice`, `dispatch/triangles` | | as of a grid |
+//! | `dispatch/sums` | u64, h × w × 3 | light of each pixel, in units of 2^-24 |
+//! | `dispatch/image` | | the picture |
+//! | `dispatch-B/rays` | i32, r × 6 | of rays that have seen B mirrors, from 0, in the leg's order: origin and direction in lattice steps |
+//! | `dispatch-B/pixel`, `weight` | u32, r; u32, r × 3 | whose they are, and what part of their light it gets, in 2^-15 |
+//! | `dispatch-B/met` | u32, r | row of `dispatch/triangles` that is met first; 2^32 - 1 for none |
+//! | `dispatch-B/point` | i32, r × 4 | side, 1 or -1 (0 for none), and the point in lattice steps, off its face |
+//! | `dispatch-B/shadows`, `shadow_pixel` | i32, s × 6; u32, s | the same of rays to lamps, which end at origin + direction |
+//! | `dispatch-B/light`, `lit` | f32, s × 3; u32, s | what they bring; 1 if they reach their lamps |
 //! | `<stage>/<image>` | f32, h × w × 3 | linear colours; also `.exr` and `.png` |
 
+mod dispatch;
 mod grid;
 mod ldm;
 mod name;
@@ -63,6 +73,7 @@ use serde::{Deserialize, Serialize};
 use triptych_spec::scene::Size;
 
 use crate::picture;
+pub use dispatch::BounceArrays;
 pub use grid::{GridArrays, GridHit};
 pub use ldm::{MapArrays, TurnArrays};
 use name::component;

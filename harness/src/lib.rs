@@ -12,6 +12,7 @@ pub mod cli;
 pub mod compare;
 pub mod corpus;
 pub mod digest;
+pub mod dispatch;
 pub mod dump;
 pub mod embree;
 pub mod error;

@@ -1,5 +1,6 @@
 //! What a scene needs, decided before anything runs.
 
+mod dispatch;
 mod grid;
 mod layouts;
 mod ldm;
@@ -12,6 +13,7 @@ use triptych_spec::scene::Scene;
 
 use crate::registry::{Chain, stages_of};
 use crate::scene::Loaded;
+pub use dispatch::DispatchPlan;
 pub use grid::GridPlan;
 pub use ldm::LdmPlan;
 pub use rivals::Asked;
@@ -189,6 +191,7 @@ pub fn passes(loaded: &Loaded, skip: bool) -> Vec<Pass> {
         Chain::Rays => GridPlan::new(loaded, skip).passes,
         Chain::Indirect => RsmPlan::new(loaded, skip).passes,
         Chain::Maps => LdmPlan::new(loaded, skip).passes,
+        Chain::Traced => DispatchPlan::new(loaded, skip).passes,
     }
 }
 

@@ -35,6 +35,8 @@ pub enum Chain {
     Indirect,
     /// Layered depth maps: a scene with an `[ldm]`.
     Maps,
+    /// Rays in queues: a scene with a `[dispatch]`.
+    Traced,
 }
 
 /// A stage. Its name is that of the spec's function, of its pass in a plan, and, unless it is

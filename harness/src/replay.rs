@@ -2,6 +2,7 @@
 
 mod adapter;
 mod broken;
+pub mod dispatch;
 mod dumps;
 pub mod embree;
 pub mod end_to_end;
@@ -18,6 +19,7 @@ mod leg;
 mod legs;
 mod own_vertices;
 pub mod pictures;
+pub mod pieces;
 mod placed;
 pub mod rivals;
 pub mod rows;
@@ -36,6 +38,7 @@ pub mod worst;
 
 use triptych_gpu::raster::Path;
 use triptych_spec::scene::Size;
+use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use crate::cache::Cache;
 use crate::corpus::Entry;
@@ -144,6 +147,23 @@ pub struct Outcome {
     /// What is beside the point but should be known: what loading left out of a mesh,
     /// a cache that cannot be written.
     pub remarks: Vec<String>,
+}
+
+/// Works out what the spec says of a scene, and nothing else.
+///
+/// # Errors
+/// One line for a scene beyond a limit.
+pub fn spec_alone(loaded: &Loaded) -> Result<(), String> {
+    let options = Options::default();
+    let mut run = Run::new(loaded, &[], &options);
+    let done = match loaded.chain() {
+        Chain::Frame => run.spec(SUBPIXEL_BITS).map(drop),
+        Chain::Rays => run.grid_spec().map(drop),
+        Chain::Indirect => run.rsm_spec().map(drop),
+        Chain::Maps => run.ldm_spec().map(drop),
+        Chain::Traced => run.dispatch_spec().map(drop),
+    };
+    done.map_err(|stop| stop.mistake().to_string())
 }
 
 /// Replays a scene.

@@ -92,6 +92,17 @@ pub enum Verdict {
 }
 
 impl Row {
+    /// Where it stands among a scene's: closed form, Embree, then GPU legs by name.
+    pub fn column(&self) -> (u8, String) {
+        let rank = match self.b.as_str() {
+            "closed form" => 0,
+            "embree" => 1,
+            leg if self.a == "spec" && leg.starts_with("gpu") => 2,
+            _ => 3,
+        };
+        (rank, self.b.clone())
+    }
+
     /// Items counted but not judged, as a share of those compared; all of them where
     /// nothing was judged, so that nothing counts as compared.
     pub fn admitted_share(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 mod abuffer;
 mod blending;
+pub mod dispatch;
 pub mod expect;
 pub mod file;
 mod fit;
@@ -30,6 +31,7 @@ use crate::mesh::Intake;
 use crate::text::{self, hex};
 use file::SceneFile;
 pub use mistake::{Lines, Mistake};
+use mistake::{line_of, utf8};
 use sky::Sky;
 use world::World;
 
@@ -54,7 +56,7 @@ mesh = []
 pub struct Loaded {
     /// `family/case`.
     pub name: String,
-    /// `raster`, `abuffer`, `grid`, `rsm` or `ldm`.
+    /// `raster`, `abuffer`, `grid`, `rsm`, `ldm` or `dispatch`.
     pub family: String,
     /// The scene as written.
     pub file: SceneFile,
@@ -199,8 +201,9 @@ fn of_parsed(
     digest.update(parsed.file.seed.to_le_bytes());
     abuffer::check(&parsed)?;
     grid::check(&parsed)?;
-    rsm::check(&parsed)?;
-    ldm::check(&parsed)?;
+    [rsm::check, ldm::check, dispatch::check]
+        .iter()
+        .try_for_each(|check| check(&parsed))?;
     ldm::settle(&mut parsed.file);
     let sky = sky::load(intake, &parsed, &mut digest)?;
     let mut meshes = source::load_all(intake, &parsed, &mut digest)?;
@@ -269,7 +272,7 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
             },
         }
     })?;
-    let others = file.grid.is_some() || file.rsm.is_some() || file.ldm.is_some();
+    let others = file.grid.is_some() || file.is_lit_later();
     let keys = match others || abuffer::is_judged_later(&file) {
         true => Lines::new(text, |at| line_of(&lines, at)),
         false => Lines::default(),
@@ -279,22 +282,5 @@ fn parse<'a>(path: &'a Path, text: &str) -> Result<Parsed<'a>, InputError> {
         lines,
         keys,
         file,
-    })
-}
-
-/// The line, from 1, that holds a byte.
-fn line_of(lines: &[usize], at: usize) -> usize {
-    lines.partition_point(|start| *start <= at)
-}
-
-fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, InputError> {
-    // A byte-order mark means nothing in UTF-8.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    std::str::from_utf8(bytes).map_err(|e| {
-        let line = 1 + bytes[..e.valid_up_to()]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count();
-        InputError::at(path, line, "is not UTF-8; a scene.toml is expected")
     })
 }

@@ -128,7 +128,7 @@ fn options_without_effect_are_told_once() {
         .write("corpus/grid/quads/scene.toml", GRID)
         .write("corpus/grid/twice/scene.toml", GRID)
         .write("corpus/grid/unasked/scene.toml", &unasked);
-    let told = "without effect on scenes with [grid], [rsm] or [ldm]: ";
+    let told = "without effect on scenes with [grid], [rsm], [ldm] or [dispatch]: ";
     for (options, said) in [
         (&[][..], None),
         (&["--gpu-from", "sort"], Some("--gpu-from")),

@@ -18,6 +18,7 @@ mod mistakes;
 mod mutants;
 mod output;
 mod outside;
+mod queues;
 mod results;
 mod stress;
 mod techniques;

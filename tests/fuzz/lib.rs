@@ -11,6 +11,7 @@ use triptych_harness::json::{self, Merged};
 use triptych_harness::mesh::{self, Intake, Mesh};
 use triptych_harness::rays::Kind;
 use triptych_harness::registry::Chain;
+use triptych_harness::replay::dispatch::DispatchRun;
 use triptych_harness::replay::grid::{GridRun, blockers};
 use triptych_harness::replay::ldm::LdmRun;
 use triptych_harness::replay::rsm::{RsmRun, Setup};
@@ -101,6 +102,7 @@ pub fn judge_scene(loaded: Result<Loaded, LoadError>) {
                 Chain::Rays => rays(&loaded),
                 Chain::Indirect => indirect(&loaded),
                 Chain::Maps => maps(&loaded),
+                Chain::Traced => traced(&loaded),
             };
             replayed.err().iter().for_each(one_line);
         }
@@ -158,6 +160,18 @@ fn maps(loaded: &Loaded) -> Result<(), Mistake> {
         assert!((0.0..2.0).contains(&open.value), "a part of the hemisphere");
         assert!(light.iter().all(|c| c.value >= 0.0), "light");
     }
+    Ok(())
+}
+
+/// The same of rays in queues: a lattice with lamps and eye on it, and a picture.
+fn traced(loaded: &Loaded) -> Result<(), Mistake> {
+    let dispatch = loaded.file.dispatch.as_ref().map(|d| d.get_ref());
+    let rays = dispatch.map_or(0, |d| d.rays(loaded.scene.size.pixels() as u64, true));
+    if loaded.scene.triangles.len() > 64 || rays > 1 << 18 {
+        return Ok(());
+    }
+    let run = DispatchRun::new(loaded)?;
+    assert!(run.rays() <= rays, "no more rays than there may be");
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 use naga::{Expression, Literal, Module};
 use triptych_gpu::abuffer::STEPS;
+use triptych_gpu::dispatch::{DEPTH_AT, LIGHT};
 use triptych_gpu::frame::WORKGROUP;
 use triptych_gpu::grid::{CHUNK, FRESH, SMALL, TRACED};
 use triptych_gpu::layouts::{BEGINS, ENDS, FOLLOWS, GOES_ON, SAMPLED};
@@ -11,6 +12,7 @@ use triptych_gpu::raster::{SATURATED, WALKED};
 use triptych_gpu::tiles::{AS_IT_IS, CONTIGUOUS, FINISHED, IN_MEMORY, IN_ORDER};
 use triptych_gpu::wgsl::network::SIZES;
 use triptych_spec::abuffer::{EOL, NOTHING};
+use triptych_spec::dispatch::{LAMPS_MAX, OFFSET, WEIGHT_ONE};
 use triptych_spec::grid::axis::WIDENED;
 use triptych_spec::grid::hit::{FOR_TIME, VOLUME_ERROR};
 use triptych_spec::layouts::MASK_BITS;
@@ -36,6 +38,7 @@ fn constant(module: &Module, name: &str) -> Option<i64> {
 fn constants_are_those_of_rust() {
     let steps = i64::try_from(STEPS).expect("a word");
     let corners = i64::try_from(CORNERS_MAX).expect("a word");
+    let lamps = i64::try_from(LAMPS_MAX).expect("few");
     let constants = [
         ("EOL", i64::from(EOL)),
         ("NOTHING", i64::from(NOTHING)),
@@ -61,6 +64,10 @@ fn constants_are_those_of_rust() {
         ("LARGE_AT_ONCE", i64::from(LARGE_AT_ONCE)),
         ("PLANE_BITS", i64::from(PLANE_BITS)),
         ("WEIGHT_BITS", i64::from(WEIGHT_BITS)),
+        ("DEPTH_AT", i64::from(DEPTH_AT)),
+        ("LIGHT", i64::from(LIGHT)),
+        ("LAMPS_MAX", lamps),
+        ("WEIGHT_ONE", i64::from(WEIGHT_ONE)),
         ("SIDE", i64::from(SIDE)),
         ("ROWS", i64::from(ROWS)),
         ("IN_REGISTERS", i64::from(SIZES[3])),
@@ -95,4 +102,5 @@ fn thresholds_are_those_of_the_spec() {
     everywhere("WIDENED", &f64::from(WIDENED), real);
     everywhere("VOLUME_ERROR", &VOLUME_ERROR, real);
     everywhere("FOR_TIME", &FOR_TIME, real);
+    everywhere("OFFSET", &f64::from(OFFSET), real);
 }

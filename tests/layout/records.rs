@@ -5,6 +5,7 @@ use std::mem::{offset_of, size_of};
 use naga::{Module, TypeInner};
 use triptych_gpu::abuffer::PROGRESS;
 use triptych_gpu::abuffer::rivals::Reducing;
+use triptych_gpu::dispatch::{Carried, Facet, Lamp, Plane, Task};
 use triptych_gpu::frame::Frame;
 use triptych_gpu::grid::Cells;
 use triptych_gpu::layouts::Listing;
@@ -138,6 +139,19 @@ fn the_frame_of_indirect_light_is_that_of_rust() {
     let rows = [("x", 0), ("y", 16), ("z", 32), ("w", 48)];
     let view = named(&rows).into_iter().chain(view.into_iter().skip(1));
     everywhere("View", &(view.collect(), size), layout);
+}
+
+#[test]
+fn what_is_told_of_rays_is_that_of_rust() {
+    let task = layout_of!(Task: items first capacity lamps depth width unused background origin
+        direction);
+    everywhere("Task", &task, layout);
+    everywhere("Plane", &layout_of!(Plane: corner right down), layout);
+    let facet = layout_of!(Facet: a axis b c unit coarse colour mirror);
+    everywhere("Facet", &facet, layout);
+    everywhere("Carried", &layout_of!(Carried: parts whose), layout);
+    let lamp = layout_of!(Lamp: position reference strength least);
+    everywhere("Lamp", &lamp, layout);
 }
 
 #[test]

@@ -27,6 +27,18 @@ impl Gpu {
         self.buffer(what, bytes, usage, false)
     }
 
+    /// The same for numbers of workgroups, which passes are told by it.
+    ///
+    /// # Errors
+    /// As [`Gpu::storage`].
+    pub(crate) fn arguments(&self, what: &'static str) -> Result<wgpu::Buffer, GpuError> {
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST
+            | wgpu::BufferUsages::INDIRECT;
+        self.buffer(what, 16, usage, false)
+    }
+
     /// The same for copies alone, of which no kernel sees anything.
     ///
     /// # Errors

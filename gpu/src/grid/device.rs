@@ -1,21 +1,24 @@
 //! Buffers of a grid, and dispatches over them.
 
+use std::mem::offset_of;
 use std::time::Duration;
 
 use triptych_spec::grid::axis::Axis;
 use triptych_spec::grid::{Blockers, ENTRIES_MAX, Membership};
 
-use super::{CHUNK, Cells, SMALL, STEPS, exact};
+use super::{CHUNK, Cells, Counted, SMALL, STEPS, exact};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::kernel::Kernels;
+use crate::ready::Ready;
 
 /// What all stages share.
 pub struct Device<'g> {
     pub(super) gpu: &'g Gpu,
     kernels: &'g Kernels,
+    /// The file of the kernel that searches.
+    search: &'static str,
     /// What kernels are told, but for what a dispatch adds.
     pub(super) cells: Cells,
     /// Triangles.
@@ -68,7 +71,18 @@ impl<'g> Device<'g> {
             chunks: gpu.storage("chunks of large boxes", 8 * u64::from(chunks.max(1)))?,
             gpu,
             kernels,
+            search: "grid",
         })
+    }
+
+    /// The same, but of two triangles whose times `f32` cannot tell apart, rays meet the one that is
+    /// first, and of two that are met at one time the smaller: the spec's answer.
+    #[must_use]
+    pub fn exactly(self) -> Self {
+        Self {
+            search: "grid_exact",
+            ..self
+        }
     }
 
     /// Number of cells.
@@ -140,15 +154,46 @@ impl<'g> Device<'g> {
         buffers: &[(&str, &wgpu::Buffer)],
     ) -> Result<Ready, GpuError> {
         let uniform = self.gpu.uniform("cells", &cells)?;
+        self.pass(entry, (cells, &uniform), groups, buffers)
+    }
+
+    /// One invocation for each ray of a queue, however many those are then, to be recorded.
+    pub(super) fn ready_counted(
+        &self,
+        cells: Cells,
+        queue: Counted<'_>,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Ready, GpuError> {
+        let uniform = self.gpu.uniform("cells", &cells)?;
+        let named = [buffers, &[("rays", queue.rays), ("hits", queue.hits)]].concat();
+        let pass = self.pass("trace", (cells, &uniform), 0, &named)?;
+        let items = offset_of!(Cells, items) as u64;
+        Ok(pass
+            .after_word((queue.arguments, 12), (&uniform, items))
+            .counted(queue.arguments))
+    }
+
+    fn pass(
+        &self,
+        entry: &str,
+        (cells, uniform): (Cells, &wgpu::Buffer),
+        groups: u32,
+        buffers: &[(&str, &wgpu::Buffer)],
+    ) -> Result<Ready, GpuError> {
         let mut all = vec![
-            ("cells", &uniform),
+            ("cells", uniform),
             ("boundaries", &self.boundaries),
             ("corners", &self.corners),
             ("unfinished", &self.unfinished),
             ("chunks", &self.chunks),
         ];
         all.extend_from_slice(buffers);
-        Ready::new(self.gpu, self.kernels, ("grid", entry), groups, &all)
+        // Where any triangle will do, there is nothing to be told apart.
+        let file = match (entry, cells.any) {
+            ("trace", 0) => self.search,
+            _ => "grid",
+        };
+        Ready::new(self.gpu, self.kernels, (file, entry), groups, &all)
     }
 
     /// A pass that counts what it leaves to be done from zero on.

@@ -6,12 +6,12 @@ use triptych_spec::grid::{Blockers, Membership};
 
 use super::device::Device;
 use super::timed::Shape;
-use super::{Cells, LONGEST};
+use super::{Cells, Counted, LONGEST};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
 use crate::lists::{TILE, long_passes};
+use crate::ready::Ready;
 
 /// Room for a grid that is built over and over.
 pub(crate) struct Room<'g> {
@@ -37,6 +37,15 @@ impl<'g> Room<'g> {
         shape: Shape,
     ) -> Result<Self, GpuError> {
         let device = Device::new(gpu, kernels, blockers, axes, Membership::Box)?;
+        Self::of(device, shape)
+    }
+
+    /// The same of a device.
+    ///
+    /// # Errors
+    /// Limits by name, and whatever the device reports.
+    pub(crate) fn of(device: Device<'g>, shape: Shape) -> Result<Self, GpuError> {
+        let gpu = device.gpu;
         let total = device.total();
         let room = |what, count: u32, size: u64| gpu.storage(what, size * u64::from(count));
         let buffers = vec![
@@ -106,6 +115,27 @@ impl<'g> Room<'g> {
             ..self.device.cells
         };
         let pass = |_| self.device.ready("trace", cells, &named);
+        (0..rounds).map(pass).collect()
+    }
+}
+
+impl Room<'_> {
+    /// As many dispatches of a search of a queue's rays, however many those are then.
+    ///
+    /// # Errors
+    /// WGSL errors; what the device refuses.
+    pub(crate) fn search_counted(
+        &self,
+        queue: Counted<'_>,
+        query: Query,
+        rounds: u32,
+    ) -> Result<Vec<Ready>, GpuError> {
+        let cells = Cells {
+            any: (query == Query::Any).into(),
+            ..self.device.cells
+        };
+        let named = self.sorted();
+        let pass = |_| self.device.ready_counted(cells, queue, &named);
         (0..rounds).map(pass).collect()
     }
 }

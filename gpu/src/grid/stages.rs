@@ -7,7 +7,7 @@ use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
 
 use super::device::Device;
-use super::{Cells, Entry, FRESH, Hit, LONGEST, Linked, Packed, TRACED};
+use super::{Cells, Counted, Entry, FRESH, Hit, LONGEST, Linked, Packed, TRACED};
 use crate::error::GpuError;
 use crate::lists::{LONG, TILE, long_passes};
 
@@ -240,6 +240,34 @@ impl<'g> Stages<'g> {
         Err(self.endless())
     }
 
+    /// The same for the rays of a queue, however many those are.
+    pub(crate) fn search_counted(
+        &mut self,
+        queue: Counted<'_>,
+        query: Query,
+    ) -> Result<Duration, GpuError> {
+        let buffers = [
+            ("offsets", &self.offsets),
+            ("listed", &self.prims),
+            ("bricks", &self.bricks),
+        ];
+        let cells = Cells {
+            any: (query == Query::Any).into(),
+            ..self.device.cells
+        };
+        let mut time = Duration::ZERO;
+        self.dispatches = 0;
+        for _ in 0..self.device.rounds(self.prims.size() / 4) {
+            self.dispatches += 1;
+            let pass = self.device.ready_counted(cells, queue, &buffers)?;
+            time += pass.run(self.device.gpu)?;
+            if self.device.take_unfinished()? == 0 {
+                return Ok(time);
+            }
+        }
+        Err(self.endless())
+    }
+
     fn endless(&self) -> GpuError {
         GpuError::Endless {
             adapter: self.device.gpu.name.clone(),
@@ -249,7 +277,7 @@ impl<'g> Stages<'g> {
 }
 
 /// A ray that has not started.
-pub(super) fn fresh() -> Hit {
+pub(crate) fn fresh() -> Hit {
     Hit {
         prim: 0,
         time: 0.0,

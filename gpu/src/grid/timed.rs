@@ -12,9 +12,9 @@ use super::room::Room;
 use super::stages::fresh;
 use super::{Hit, Packed};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
+use crate::ready::Ready;
 use crate::timer::Timer;
 
 /// What is timed, in the order of all results here.

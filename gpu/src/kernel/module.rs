@@ -56,7 +56,7 @@ fn unchecked(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::S
     // tiles and of runs are read where the same kernels have counted and filled them, from the same
     // triangles, in bins and lists whose capacity is that of the count; links of other layouts are
     // certified; those of `linked`, packed and ordered lists lead nowhere but to nodes that a counter
-    // handed out.
+    // handed out. Rays of a queue are stored below its capacity, and read below the number that were.
     unsafe { gpu.device.create_shader_module_trusted(descriptor, checks) }
 }
 

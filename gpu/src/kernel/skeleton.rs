@@ -90,6 +90,9 @@ fn invocation(module: &Module, stage: &Stage, entry: &str) -> (String, String) {
         matches!(stage.file, "peel" | "dual" | "alpha" | "weighted") && !walks.contains(&entry);
     let items = match (stage.file, stage.name) {
         ("layouts" | "packed" | "regions" | "ordered", _) => of_layouts(entry),
+        // The first invocation alone.
+        ("dispatch", "intersect") => "1u",
+        ("dispatch", _) => "task.items",
         ("grid", _) => "cells.items",
         ("rsm", _) => "parameters.items",
         ("tiles", _) => "tiled.items",

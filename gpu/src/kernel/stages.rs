@@ -1,6 +1,7 @@
 //! The stages that kernels implement: where each one's entry points are, and what an
 //! invocation of it does.
 
+mod dispatch;
 mod layouts;
 mod rivals;
 mod tiles;
@@ -9,7 +10,7 @@ mod vertex;
 use super::Stage;
 
 /// Every stage, in the order in which they run.
-pub const STAGES: [Stage; 45] = [
+pub const STAGES: [Stage; 51] = [
     vertex::TRANSFORM,
     vertex::CLIP,
     vertex::SNAP,
@@ -280,4 +281,10 @@ pub const STAGES: [Stage; 45] = [
             there or 0xffffffff, and then the radiance in skies, else 0. views[i] is the vector to the eye; \
             0 finds nothing, as do maps without weight.",
     },
+    dispatch::PRIMARY,
+    dispatch::INTERSECT,
+    dispatch::LOCATE,
+    dispatch::LIGHT,
+    dispatch::REFLECT,
+    dispatch::DEPOSIT,
 ];

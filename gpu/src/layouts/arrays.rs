@@ -5,10 +5,10 @@ use triptych_spec::layouts::{Entry, fragment};
 
 use super::Listing;
 use super::room::{Room, Step, no_lists, word};
-use crate::dispatch::GROUPS_MAX;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::lists::long_passes;
+use crate::ready::GROUPS_MAX;
 
 const BUFFERS: [&str; 2] = ["listed", "merged"];
 

@@ -6,11 +6,11 @@ use triptych_spec::abuffer::Lists;
 
 use super::{Layout, Listing, Options};
 use crate::abuffer::rivals::image;
-use crate::dispatch;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::named::Named;
 use crate::raster::{self, Rasterizer, Work};
+use crate::ready;
 use crate::timer::Writes;
 
 /// Pixels that a band may have: those of a dispatch of one row, and what can be bound of them.
@@ -26,7 +26,7 @@ pub(super) enum Step {
     /// Over triangles.
     Drawn(raster::Ready),
     /// Over anything else.
-    Other(dispatch::Ready),
+    Other(ready::Ready),
 }
 
 impl Step {
@@ -136,7 +136,7 @@ impl<'r, 'g> Room<'r, 'g> {
         entry: &str,
         listing: Listing,
         groups: u32,
-    ) -> Result<dispatch::Ready, GpuError> {
+    ) -> Result<ready::Ready, GpuError> {
         self.pass_of(self.layout.file(), entry, listing, groups)
     }
 
@@ -147,7 +147,7 @@ impl<'r, 'g> Room<'r, 'g> {
         entry: &str,
         listing: Listing,
         groups: u32,
-    ) -> Result<dispatch::Ready, GpuError> {
+    ) -> Result<ready::Ready, GpuError> {
         let Rasterizer { gpu, kernels, .. } = *self.rasterizer;
         let frame = gpu.uniform("frame", &self.frame)?;
         let listing = gpu.uniform("listing", &listing)?;
@@ -158,7 +158,7 @@ impl<'r, 'g> Room<'r, 'g> {
             ("corners", self.rasterizer.corners()),
             ("faces", &self.rasterizer.faces),
         ]);
-        dispatch::Ready::new(gpu, kernels, (file, entry), groups, &named)
+        ready::Ready::new(gpu, kernels, (file, entry), groups, &named)
     }
 
     /// One invocation a pixel.
@@ -166,7 +166,7 @@ impl<'r, 'g> Room<'r, 'g> {
         &self,
         entry: &str,
         listing: Listing,
-    ) -> Result<dispatch::Ready, GpuError> {
+    ) -> Result<ready::Ready, GpuError> {
         self.pass(entry, listing, self.pixels().div_ceil(WORKGROUP))
     }
 

@@ -8,11 +8,11 @@ use triptych_spec::ldm::Maps;
 use super::batch::Span;
 use super::{LARGE_AT_ONCE, MAPS_AT_ONCE, Packed, Told};
 use crate::context::Gpu;
-use crate::dispatch::{GROUPS_MAX, Ready};
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::kernel::Kernels;
 use crate::lists::TILE;
+use crate::ready::{GROUPS_MAX, Ready};
 
 pub(super) type Buffers<'b> = [(&'b str, &'b wgpu::Buffer)];
 

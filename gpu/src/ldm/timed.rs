@@ -14,10 +14,10 @@ use super::light::{ASKED, asking, fading, lists, padded, runs};
 use super::lists::{Batch, COUNT, FILL, LONGEST};
 use super::{Open, Told};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
 use crate::lists::{LONG, TILE, long_passes};
+use crate::ready::Ready;
 use crate::timer::Timer;
 
 pub use chained::{ChainSpan, TimedChains};

@@ -8,10 +8,10 @@ use triptych_spec::scene::Size;
 use super::records::{Surface, faces};
 use super::{Parameters, Surfaces, View};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::kernel::Kernels;
+use crate::ready::Ready;
 
 pub(super) type Buffers<'b> = [(&'b str, &'b wgpu::Buffer)];
 

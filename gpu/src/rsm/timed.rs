@@ -12,11 +12,11 @@ use super::device::Device;
 use super::records::{Light, Place, Surface};
 use super::setup::room;
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::grid::{Room, Shape};
 use crate::kernel::Kernels;
 use crate::raster::{self, Path, Rasterizer};
+use crate::ready::Ready;
 use crate::timer::{Queries, Timer, Writes};
 
 /// What is timed, in the order of a frame.

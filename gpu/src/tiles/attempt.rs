@@ -11,10 +11,10 @@ use super::rows;
 use super::{DRAWN, Drawn, Options, Times};
 use crate::abuffer::BandResult;
 use crate::abuffer::rivals::{Surfaces, image};
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame};
 use crate::raster::{Attempts, Need, Rasterizer, SATURATED};
+use crate::ready::Ready;
 
 /// Triangles in bins beyond which a band is split: a triangle has 64 fragments in a tile at most, and
 /// sums of fragments are to stay below [`SATURATED`].

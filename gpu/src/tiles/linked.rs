@@ -11,11 +11,11 @@ use super::nodes;
 use super::room::{COLOUR, Room, SAMPLE};
 use super::{Options, Tiled};
 use crate::abuffer::{BandResult, PROGRESS, dispatches};
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::lists::until_done;
 use crate::raster::{Need, Rasterizer, SATURATED};
+use crate::ready::Ready;
 
 /// Of a sample: opaque surface, picture. Of a pixel: head, progress of sort and blend. Of a fragment: a
 /// node.

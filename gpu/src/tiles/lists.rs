@@ -2,10 +2,10 @@
 
 use super::Tiled;
 use super::room::{Longest, Room};
-use crate::dispatch::{GROUPS_MAX, Ready};
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::lists::long_passes;
+use crate::ready::{GROUPS_MAX, Ready};
 
 /// Steps along lists that a dispatch takes.
 pub(super) const STEPS: u32 = 16_384;

@@ -9,11 +9,11 @@ use triptych_spec::tiles::{Digest, SIDE, digest, packed};
 use super::attempt::{self, Tried};
 use super::room::{self, Room};
 use super::{Options, Tiled, tiles};
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::lists::LONG;
 use crate::raster::{Rasterizer, SATURATED};
+use crate::ready::Ready;
 
 /// What came out of all bands.
 #[derive(Clone, Debug, Default)]

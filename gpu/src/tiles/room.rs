@@ -5,12 +5,12 @@ use triptych_spec::tiles::SIDE;
 
 use super::pool::Pool;
 use super::{Tiled, lists, tiles};
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::lists::TILE;
 use crate::named::Named;
 use crate::raster::{Need, Rasterizer};
+use crate::ready::Ready;
 
 /// Bytes of a list. Twin: `List` in `jagged.wgsl`.
 const LIST: u64 = 12;

@@ -6,10 +6,10 @@ use super::attempt::BINNED_MAX;
 use super::pool::Pool;
 use super::room::Room;
 use super::{Options, Region, attempt};
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::Band;
 use crate::raster::Rasterizer;
+use crate::ready::Ready;
 use crate::timer::Queries;
 
 /// What is timed.

@@ -10,11 +10,11 @@ use triptych_spec::scene::Scene;
 use super::stages::{self, VERTICES};
 use super::{CORNERS, Given, run};
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::frame::{Band, Frame, WORKGROUP};
 use crate::kernel::Kernels;
 use crate::lists::TILE;
+use crate::ready::Ready;
 use crate::timer::Timer;
 
 /// The vertex stages of a scene, ready to run.

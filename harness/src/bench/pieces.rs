@@ -4,12 +4,12 @@
 use triptych_gpu::frame::Band;
 use triptych_spec::abuffer::{Lists, Sorted};
 use triptych_spec::raster::Fragment;
-use triptych_spec::scene::Size;
 use triptych_spec::vertex::Primitives;
 
 use super::gpu::Refusal;
 use crate::compare::{compare, order};
 use crate::observe::{Gpu, Observed, Spec};
+use crate::replay::pieces::{self, Rows};
 
 /// Fragments of all rows that are looked at, about.
 const LOOKED_AT: u64 = 1 << 23;
@@ -47,19 +47,10 @@ pub(super) fn looked_at(rows: &[u32]) -> Vec<Band> {
     (0..count).map(|i| band(row(i))).collect()
 }
 
-/// The triangles as they lie in a target of these rows alone. Positions are integers of the
-/// sub-pixel grid, and move by whole pixels: coverage and keys are what they were.
+/// The triangles as they lie in a target of these rows alone.
 pub(super) fn of_rows(primitives: &Primitives, band: Band) -> Primitives {
-    let down = (band.first << primitives.bits).cast_signed();
-    let moved = |[x, y, key]: &[i32; 3]| [*x, y - down, *key];
-    Primitives {
-        size: Size {
-            height: band.rows,
-            ..primitives.size
-        },
-        snapped: primitives.snapped.iter().map(moved).collect(),
-        ..primitives.clone()
-    }
+    let (first, count) = (band.first, band.rows);
+    pieces::of_rows(primitives, Rows { first, count })
 }
 
 /// The sorted lists of some rows; pixels count from their first.

@@ -1,12 +1,14 @@
 //! `triptych bench`.
 
 pub(super) mod abuffer;
+mod dispatch;
 mod extremes;
 mod files;
 mod grid;
 mod ldm;
 mod legs;
 mod rsm;
+mod share;
 mod stress;
 
 use std::path::PathBuf;
@@ -22,6 +24,8 @@ use crate::replay::gpu::Adapter;
 pub enum Bench {
     /// Time against error: the nearest 1, 2, 4, … layers of each pixel
     Abuffer(abuffer::Args),
+    /// Work queues: frames of a ray tracer against threads, queue by queue
+    Dispatch(dispatch::Args),
     /// Grids: builds and rays against resolution, beside Embree and a BVH
     Grid(grid::Args),
     /// Layered depth maps: time of making and asking them against their error
@@ -30,6 +34,8 @@ pub enum Bench {
     Legs(legs::Args),
     /// Indirect light: time of a frame against its error
     Rsm(rsm::Args),
+    /// The spec's share of a replay, with one thread and with more
+    Share(share::Args),
     /// What holds at the extremes, and by how much
     #[command(long_flag = "stress")]
     Stress(stress::Args),
@@ -38,10 +44,12 @@ pub enum Bench {
 pub fn run(bench: &Bench) -> anyhow::Result<Verdict> {
     match bench {
         Bench::Abuffer(args) => abuffer::run(args),
+        Bench::Dispatch(args) => dispatch::run(args),
         Bench::Grid(args) => grid::run(args),
         Bench::Ldm(args) => ldm::run(args),
         Bench::Legs(args) => legs::run(args),
         Bench::Rsm(args) => rsm::run(args),
+        Bench::Share(args) => share::run(args),
         Bench::Stress(args) => stress::run(args),
     }
 }

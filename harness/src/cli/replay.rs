@@ -18,6 +18,7 @@ use super::run_info::run_info;
 use super::{Verdict, reports};
 use crate::cache::Cache;
 use crate::corpus::Entry;
+use crate::dispatch::share;
 use crate::output::stdout;
 use crate::replay::gpu::Vertices;
 use crate::replay::{Outcome, replay};
@@ -38,6 +39,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let entries = corpus::list(&corpus::root())?;
     let selected = args.scenes.select(&entries)?;
     let mut options = args.options()?;
+    share::set_threads(args.threads.map(|threads| threads as usize));
     all_run(&foreign, &options)?;
     anyhow::ensure!(
         foreign.is_empty() || options.vertex != Vertices::Hardware,
@@ -46,11 +48,7 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
     let found = args.adapters(&options, &foreign)?;
     let adapters = found.open;
     options.broken = found.broken;
-    let library = if options.embree {
-        Some(embree::library()?)
-    } else {
-        None
-    };
+    let library = options.embree.then(embree::library).transpose()?;
     options.cache = args.cache()?;
     let mut results = Results::new(selected.len(), args.again(), args.json.as_deref())?;
     let of_cache = options.cache.iter().flat_map(Cache::remarks);
@@ -64,8 +62,9 @@ pub fn run(args: &Args) -> anyhow::Result<Verdict> {
         match replay(entry, &adapters, &options) {
             Ok(outcome) => {
                 if let Some(options) = idle.take_if(|_| outcome.runs_kernels_alone()) {
-                    let remark =
-                        format!("without effect on scenes with [grid], [rsm] or [ldm]: {options}");
+                    let remark = format!(
+                        "without effect on scenes with [grid], [rsm], [ldm] or [dispatch]: {options}"
+                    );
                     results.reporter.remark(&remark)?;
                 }
                 if args.snapshot {

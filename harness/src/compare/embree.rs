@@ -36,10 +36,10 @@ mod screen;
 mod vote;
 mod world;
 
-use rayon::prelude::*;
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
+use crate::dispatch::share;
 use crate::embree::world::World;
 use crate::embree::{EmbreeError, RayHits, ScreenHits};
 use band::judge;
@@ -84,14 +84,12 @@ pub fn compare_world<E: RayHits>(
 fn in_bands<P: Pairs, E: RayHits>(pairs: &P, embree: &E) -> Result<EmbreeVote, EmbreeError> {
     let height = pairs.size().height;
     let shares = Shares::new(pairs, BAND);
-    let bands: Vec<Result<EmbreeVote, EmbreeError>> = (0..height.div_ceil(BAND))
-        .into_par_iter()
-        .map(|band| {
-            let first = band * BAND;
-            let rows = first..(first + BAND).min(height);
-            judge(pairs, embree, &shares, band as usize, rows)
-        })
-        .collect();
+    let bands: Vec<_> = (0..height.div_ceil(BAND)).collect();
+    let bands: Vec<Result<EmbreeVote, EmbreeError>> = share::map(&bands, 1, |band| {
+        let first = band * BAND;
+        let rows = first..(first + BAND).min(height);
+        judge(pairs, embree, &shares, *band as usize, rows)
+    });
     let mut total = EmbreeVote::default();
     for band in bands {
         total.add(band?);

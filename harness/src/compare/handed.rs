@@ -13,7 +13,6 @@ mod reach;
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use triptych_spec::raster::Fragment;
 use triptych_spec::scene::{Scene, Size};
 use triptych_spec::vertex::{self, GUARD, Plane, Position, clip_triangle, guard_origin};
@@ -22,8 +21,12 @@ use super::region::{Columns, REACH_MAX, Region};
 use crate::cause::Cause;
 use crate::compare::Judgement;
 use crate::compare::fragments::at;
+use crate::dispatch::share;
 use crate::row::Class;
 use reach::Reach;
+
+/// Triangles of a piece of work.
+const TRIANGLES: usize = 1 << 12;
 
 /// Half the viewport, in pixels.
 const HALF: f64 = GUARD as f64 / 2.0;
@@ -63,7 +66,7 @@ impl Handed {
         let place = |t: &[Position<f32>; 3]| place(scene.size, *t, step);
         Self {
             size: scene.size,
-            places: triangles.par_iter().map(place).collect(),
+            places: share::map(&triangles, TRIANGLES, place),
             triangles,
         }
     }

@@ -24,7 +24,6 @@ mod rule;
 mod snap;
 mod words;
 
-use rayon::prelude::*;
 use triptych_spec::bound::Bounded;
 use triptych_spec::scene::{Scene, Triangle};
 use triptych_spec::vertex::{Polygons, Position};
@@ -47,16 +46,14 @@ fn each(
     scene: &Scene,
     judge: impl Fn(usize, &Triangle, &mut VertexReport) -> bool + Sync,
 ) -> (VertexReport, Vec<usize>) {
-    let chunks = scene.triangles.par_chunks(CHUNK).enumerate();
-    let parts: Vec<(VertexReport, Vec<usize>)> = chunks
-        .map(|(chunk, triangles)| {
-            let mut part = VertexReport::default();
-            let rows = (chunk * CHUNK..).zip(triangles);
-            let told = rows.filter(|(row, triangle)| judge(*row, triangle, &mut part));
-            let told = told.map(|(row, _)| row).collect();
-            (part, told)
-        })
-        .collect();
+    let chunks: Vec<_> = scene.triangles.chunks(CHUNK).collect();
+    let parts: Vec<(VertexReport, Vec<usize>)> = share::each(chunks.len(), |chunk| {
+        let mut part = VertexReport::default();
+        let rows = (chunk * CHUNK..).zip(chunks[chunk]);
+        let told = rows.filter(|(row, triangle)| judge(*row, triangle, &mut part));
+        let told = told.map(|(row, _)| row).collect();
+        (part, told)
+    });
     let mut report = VertexReport::default();
     let mut all = Vec::new();
     for (part, rows) in parts {
@@ -114,3 +111,4 @@ fn polygon<T>(polygons: &Polygons<T>, triangle: usize) -> &[Position<T>] {
 
 #[cfg(test)]
 mod tests;
+use crate::dispatch::share;

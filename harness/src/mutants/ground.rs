@@ -1,5 +1,6 @@
 //! A scene on which mutants run, once the shipped kernels agree there.
 
+mod able;
 mod part;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,11 +12,11 @@ use triptych_gpu::wgsl::Sources;
 use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::{Cell, Mutant};
-use crate::calibrate::Grid;
 use crate::observe::{Observed, Spec};
-use crate::plan::{LdmPlan, Plan, RsmPlan};
+use crate::plan::{DispatchPlan, LdmPlan, Plan, RsmPlan};
 use crate::registry::Chain;
-use crate::replay::gpu::{Adapter, Drawn, From, GpuLeg};
+use crate::replay::dispatch::{DispatchLeg, DispatchRun};
+use crate::replay::gpu::{Adapter, From, GpuLeg};
 use crate::replay::grid::{GridLeg, GridRun};
 use crate::replay::ldm::{LdmLeg, LdmRun};
 use crate::replay::rivals::run_only;
@@ -41,6 +42,7 @@ pub(super) struct Ground {
     rsm: Option<(Observed<Spec, RsmRun>, RsmPlan)>,
     /// Of a scene of maps.
     ldm: Option<(Observed<Spec, LdmRun>, LdmPlan)>,
+    dispatch: Option<(Observed<Spec, DispatchRun>, DispatchPlan)>,
     /// Where the shipped kernels were seen to agree.
     pub(super) sound: BTreeSet<(String, Setting)>,
 }
@@ -60,7 +62,7 @@ pub(super) type Tried = Result<(Cell, Option<Setting>), String>;
 impl Ground {
     pub(super) fn load(mutant: &Mutant) -> Result<Self, String> {
         let loaded = load_entry(&mutant.entry(), None).map_err(|e| e.to_string())?;
-        let (mut grid, mut rsm, mut ldm) = (None, None, None);
+        let (mut grid, mut rsm, mut ldm, mut dispatch) = (None, None, None, None);
         match loaded.chain() {
             Chain::Frame => {}
             Chain::Rays => grid = Some(Observed::new("spec", GridRun::new(&loaded)?)),
@@ -72,6 +74,10 @@ impl Ground {
                 let run = Observed::new("spec", LdmRun::new(&loaded, true)?);
                 ldm = Some((run, LdmPlan::new(&loaded, true)));
             }
+            Chain::Traced => {
+                let run = Observed::new("spec", DispatchRun::new(&loaded)?);
+                dispatch = Some((run, DispatchPlan::new(&loaded, true)));
+            }
         }
         Ok(Self {
             plan: Plan::of(&loaded, true),
@@ -79,6 +85,7 @@ impl Ground {
             grid,
             rsm,
             ldm,
+            dispatch,
             specs: BTreeMap::new(),
             sound: BTreeSet::new(),
         })
@@ -202,6 +209,21 @@ impl Ground {
             }
             return Ok(rows.rows);
         }
+        if let Some((spec, plan)) = &self.dispatch {
+            let leg = DispatchLeg {
+                adapter,
+                path,
+                spec,
+                passes: &plan.passes,
+            };
+            leg.each(&mut rows)?;
+            // What searches answer in their exact form is told by the stage; what queues are without the
+            // host's reading them, only by the whole.
+            if rows.rows.iter().all(|row| row.differ == 0) {
+                leg.end_to_end(&mut rows)?;
+            }
+            return Ok(rows.rows);
+        }
         self.frame(adapter, setting, files, &mut rows)?;
         Ok(rows.rows)
     }
@@ -245,23 +267,6 @@ impl Ground {
             Part::Tiles => tiles::run_only(files, &leg, Extent::All, rows),
             Part::Layouts => layouts::run_only(files, &leg, Extent::All, rows),
             _ => leg.run(rows).map(drop),
-        }
-    }
-
-    /// Why a path has nothing to say of a mutant on this scene.
-    fn cannot_run(&self, adapter: &Adapter, path: Path) -> Option<String> {
-        let samples = self.loaded.scene.samples;
-        match path {
-            Path::Native if adapter.native.is_none() => Some("no 64-bit integers".to_owned()),
-            Path::Fragment if adapter.grid == Grid::Unknown => {
-                Some("the sub-pixel grid is unknown".to_owned())
-            }
-            _ => match adapter.samples(path, samples) {
-                Ok(Drawn::With(found)) if found == samples => None,
-                Ok(Drawn::With(_)) => Some("its samples have places of their own".to_owned()),
-                Ok(Drawn::Not(reason)) => Some(reason),
-                Err(error) => Some(error.to_string()),
-            },
         }
     }
 

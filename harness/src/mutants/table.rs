@@ -12,7 +12,7 @@ use crate::corpus::{self, Entry};
 use crate::replay::gpu::PathName;
 use crate::text::hex;
 
-const TABLES: [(&str, &str); 10] = [
+const TABLES: [(&str, &str); 11] = [
     ("vertex.toml", include_str!("vertex.toml")),
     ("raster.toml", include_str!("raster.toml")),
     ("abuffer.toml", include_str!("abuffer.toml")),
@@ -23,6 +23,7 @@ const TABLES: [(&str, &str); 10] = [
     ("grid.toml", include_str!("grid.toml")),
     ("rsm.toml", include_str!("rsm.toml")),
     ("ldm.toml", include_str!("ldm.toml")),
+    ("dispatch.toml", include_str!("dispatch.toml")),
 ];
 
 /// A named defect, and where it must show.

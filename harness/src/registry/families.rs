@@ -220,6 +220,20 @@ pub const FAMILIES: &[Family] = &[
         ],
         no_corpus: None,
     },
+    Family {
+        name: "dispatch",
+        files: &[],
+        chain: Chain::Traced,
+        stages: &[
+            of_rays("primary", &["primary"]),
+            of_rays("intersect", &["intersect_queue"]),
+            of_rays("locate", &["locate"]),
+            of_rays("light", &["light"]),
+            of_rays("reflect", &["reflect"]),
+            of_rays("deposit", &["deposit"]),
+        ],
+        no_corpus: None,
+    },
 ];
 
 const fn vertex(name: &'static str, entries: &'static [&'static str]) -> Stage {
@@ -259,6 +273,14 @@ const fn of_pixels(name: &'static str, entries: &'static [&'static str]) -> Stag
         name,
         compute: Twin::Entries(entries),
         fragment: Twin::None("works on pixels and texels that know their triangle"),
+    }
+}
+
+const fn of_rays(name: &'static str, entries: &'static [&'static str]) -> Stage {
+    Stage {
+        name,
+        compute: Twin::Entries(entries),
+        fragment: Twin::None("works on rays, in compute kernels"),
     }
 }
 

@@ -15,6 +15,7 @@ use std::thread;
 use triptych_gpu::raster::Path;
 use triptych_spec::raster::Samples;
 
+use super::dispatch::DispatchRun;
 use super::gpu::Adapter;
 use super::grid::GridRun;
 use super::ldm::LdmRun;
@@ -60,6 +61,8 @@ pub(super) struct Shared {
     rsm: Mutex<Weak<Observed<Spec, RsmRun>>>,
     /// Of a scene with maps.
     ldm: Mutex<Weak<Observed<Spec, LdmRun>>>,
+    /// Of a scene with rays in queues.
+    dispatch: Mutex<Weak<Observed<Spec, DispatchRun>>>,
 }
 
 /// What came of a piece of work.
@@ -144,7 +147,7 @@ impl<'a> Run<'a> {
         // Each lane lets go of the spec's results when it goes on to another grid.
         let first: Vec<Self> = lanes.iter().map(|_| self.apart()).collect();
         (self.spec, self.grid) = (None, None);
-        (self.rsm, self.ldm) = (None, None);
+        (self.rsm, self.ldm, self.dispatch) = (None, None, None);
         let mut parts: Vec<Part<'a>> = thread::scope(|scope| {
             let lanes = lanes.into_values().zip(first);
             let lanes = lanes.map(|(lane, run)| scope.spawn(|| run.lane(lane)));
@@ -195,6 +198,7 @@ impl<'a> Run<'a> {
             grid: self.grid.clone(),
             rsm: self.rsm.clone(),
             ldm: self.ldm.clone(),
+            dispatch: self.dispatch.clone(),
             shared: self.shared.clone(),
             rows: Rows::new(&self.loaded.name, &self.loaded.family),
             pictures: Vec::new(),
@@ -214,6 +218,7 @@ impl<'a> Run<'a> {
         self.grid = part.grid.or_else(|| self.grid.take());
         self.rsm = part.rsm.or_else(|| self.rsm.take());
         self.ldm = part.ldm.or_else(|| self.ldm.take());
+        self.dispatch = part.dispatch.or_else(|| self.dispatch.take());
         self.rows.append(part.rows);
         self.pictures.extend(part.pictures);
         self.sheets.extend(part.sheets);

@@ -11,6 +11,7 @@ mod spec;
 mod tally;
 #[cfg(test)]
 mod tests;
+mod turned;
 
 use std::time::Instant;
 

@@ -78,7 +78,7 @@ fn moved(world: &Matrix, entry: &MeshEntry, frame: u32) -> Matrix {
     on.times(world).times(&turned)
 }
 
-/// The finest lattice that holds all frames, and the eyes of perspectives.
+/// The finest lattice that holds all frames, the eyes of perspectives, and some points more.
 ///
 /// # Errors
 /// Coordinates that are not finite, in one line.
@@ -86,6 +86,7 @@ pub(super) fn lattice(
     loaded: &Loaded,
     frames: u32,
     cameras: &[&Camera],
+    others: &[[f64; 3]],
 ) -> Result<Lattice, String> {
     let perspective = |c: &&&Camera| matches!(c.projection, Projection::Perspective { .. });
     let eyes = cameras.iter().filter(perspective).map(|c| c.eye);
@@ -96,7 +97,7 @@ pub(super) fn lattice(
         let triangles = loaded.scene.triangles.iter();
         triangles.flat_map(move |t| t.vertices.map(|v| points[v as usize]))
     });
-    match Lattice::around(all.chain(eyes)) {
+    match Lattice::around(all.chain(eyes).chain(others.iter().copied())) {
         Ok(lattice) => Ok(lattice),
         // Nothing is seen, from infinitely far away.
         Err(LatticeError::Empty) => Ok(Lattice {

@@ -7,6 +7,7 @@ mod kernel;
 mod limits;
 mod pictures;
 mod setup;
+mod shared;
 mod spec;
 #[cfg(test)]
 mod tests;

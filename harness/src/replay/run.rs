@@ -6,6 +6,7 @@ use std::sync::Arc;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
+use super::dispatch::DispatchRun;
 use super::facts::Facts;
 use super::gpu::Adapter;
 use super::grid::GridRun;
@@ -41,6 +42,8 @@ pub(super) struct Run<'a> {
     pub(super) rsm: Option<Arc<Observed<Spec, RsmRun>>>,
     /// The spec's results of a scene with maps.
     pub(super) ldm: Option<Arc<Observed<Spec, LdmRun>>>,
+    /// The spec's results of a scene with rays in queues.
+    pub(super) dispatch: Option<Arc<Observed<Spec, DispatchRun>>>,
     /// The same, of all lanes.
     pub(super) shared: Arc<Shared>,
     pub(super) rows: Rows,
@@ -65,6 +68,7 @@ impl<'a> Run<'a> {
             grid: None,
             rsm: None,
             ldm: None,
+            dispatch: None,
             shared: Arc::default(),
             rows: Rows::new(&loaded.name, &loaded.family),
             pictures: Vec::new(),
@@ -84,16 +88,18 @@ impl<'a> Run<'a> {
             Chain::Rays => self.grid()?,
             Chain::Indirect => self.rsm()?,
             Chain::Maps => self.ldm()?,
+            Chain::Traced => self.dispatch()?,
         }
         if self.rows.rows.is_empty() {
             let reason = "no other leg was asked for".to_owned();
             self.rows.skip("all", "spec", "none", Class::Exact, reason);
         }
         let spots = &self.rows.spots;
-        let causes = match (&self.rsm, &self.ldm) {
-            (Some(spec), _) => spec.value.causes(spots),
-            (_, Some(spec)) => spec.value.causes(spots),
-            (None, None) => pictures::causes(self.spec.as_deref(), spots),
+        let causes = match (&self.rsm, &self.ldm, &self.dispatch) {
+            (Some(spec), ..) => spec.value.causes(spots),
+            (_, Some(spec), _) => spec.value.causes(spots),
+            (.., Some(spec)) => spec.value.causes(spots),
+            (None, None, None) => pictures::causes(self.spec.as_deref(), spots),
         };
         self.pictures
             .extend(causes.filter(|_| self.options.pictures));
@@ -104,7 +110,7 @@ impl<'a> Run<'a> {
         if self.options.pictures && self.options.embree && chain == Chain::Frame && one {
             self.look_again(&worst)?;
         }
-        self.rows.rows.sort_by_key(column);
+        self.rows.rows.sort_by_key(Row::column);
         Ok(Outcome {
             name: self.loaded.name.clone(),
             purpose: self.loaded.file.purpose.0.clone(),
@@ -284,15 +290,4 @@ impl<'a> Run<'a> {
         embree::run_world(self.loaded, self.options.world, &spec, &mut self.rows);
         Ok(())
     }
-}
-
-/// Where a row stands: closed form, Embree, then GPU legs by name.
-fn column(row: &Row) -> (u8, String) {
-    let rank = match row.b.as_str() {
-        "closed form" => 0,
-        "embree" => 1,
-        leg if row.a == "spec" && leg.starts_with("gpu") => 2,
-        _ => 3,
-    };
-    (rank, row.b.clone())
 }

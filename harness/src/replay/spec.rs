@@ -2,12 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use triptych_spec::abuffer::{self, Lists, Opaque, Sorted};
+use triptych_spec::abuffer::{Lists, Opaque, Sorted};
 use triptych_spec::bound::Bounded;
 use triptych_spec::raster::{self, Fragment};
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
+use super::pieces::{Asked, draw};
 use super::rivals::Rivals;
 use crate::plan::Plan;
 
@@ -25,7 +26,7 @@ pub struct SpecRun {
     pub cover: Vec<Fragment>,
     /// Nearest opaque surfaces.
     pub opaque: Opaque,
-    /// Linked lists as inserted, one by one.
+    /// Linked lists as inserted, one by one, band by band ([`super::pieces`]).
     pub lists: Lists,
     /// The lists, sorted.
     pub sorted: Sorted,
@@ -37,7 +38,7 @@ pub struct SpecRun {
     pub times: Times,
 }
 
-/// Time of each stage.
+/// Time of each stage on one core, though several may share it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
     /// Stage transform.
@@ -71,34 +72,27 @@ impl SpecRun {
                  replay holds; use a smaller size or fewer triangles"
             ));
         }
-        let mut times = Times::default();
-        let mut cover = Vec::new();
-        if plan.cover {
-            times.cover = timed(|| raster::cover(&primitives, |f| cover.push(f))).1;
-        }
-        let mut opaque = Opaque::nothing(&primitives);
-        if plan.opaque {
-            (opaque, times.opaque) = timed(|| abuffer::opaque(scene, &primitives));
-        }
-        let depth_test = plan.depth_test;
-        let build = || abuffer::build(scene, &primitives, &opaque, depth_test, u32::MAX);
-        let (lists, build) = timed(build);
-        let (sorted, sort) = timed(|| abuffer::sort(&lists));
-        let resolve = || abuffer::resolve(scene, &primitives, &opaque, &sorted);
-        let (image, resolve) = timed(resolve);
+        let asked = Asked {
+            cover: plan.cover,
+            opaque: plan.opaque,
+            depth_test: plan.depth_test,
+        };
+        let drawn = draw(scene, &primitives, asked, count);
         Ok(Self {
             faces: faces(scene, &primitives),
-            cover,
-            opaque,
-            lists,
-            sorted,
-            image,
+            cover: drawn.cover,
+            opaque: drawn.opaque,
+            lists: drawn.lists,
+            sorted: drawn.sorted,
+            image: drawn.image,
             rivals: Rivals::new(plan.asked),
             times: Times {
-                build,
-                sort,
-                resolve,
-                ..times
+                cover: drawn.times.cover,
+                opaque: drawn.times.opaque,
+                build: drawn.times.build,
+                sort: drawn.times.sort,
+                resolve: drawn.times.resolve,
+                ..Times::default()
             },
             primitives,
         })

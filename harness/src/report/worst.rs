@@ -10,7 +10,7 @@ use crate::text::{clean, count, plural};
 
 /// Rows in the order in which stages depend on each other, with those that stand for a
 /// whole leg before, and those that draw stages together behind.
-const ORDER: [&str; 51] = [
+const ORDER: [&str; 57] = [
     "leg",
     "all",
     "expect",
@@ -60,6 +60,12 @@ const ORDER: [&str; 51] = [
     "occlusion",
     "environment",
     "mirror",
+    "primary",
+    "intersect",
+    "locate",
+    "light",
+    "reflect",
+    "deposit",
     "end to end",
     "plan",
 ];

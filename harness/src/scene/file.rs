@@ -6,11 +6,14 @@ use serde::Deserialize;
 use toml::Spanned;
 
 pub use super::abuffer::{Abuffer, LayerOrder, SampleCount};
+use super::dispatch::Dispatch;
 use super::expect::Expect;
 use super::grid::Grid;
 use super::ldm::Ldm;
 use super::rsm::{Motion, Rsm};
-use super::value::{Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, at_most};
+use super::value::{
+    Colour, Direction, ImageSize, Number, Point, Scale, Sentence, Share, Shares, at_most,
+};
 use crate::generate::Generator;
 
 /// Most lights of a scene: each shines on every triangle.
@@ -55,6 +58,9 @@ pub struct SceneFile {
     pub rsm: Option<Spanned<Rsm>>,
     /// What is open around its points; with it the family `ldm` runs in place of the others.
     pub ldm: Option<Spanned<Ldm>>,
+    /// Its triangles are lit by lamps and mirror each other; with it the family `dispatch` runs in
+    /// place of the others.
+    pub dispatch: Option<Spanned<Dispatch>>,
     /// Shares of what may go unjudged.
     #[serde(default)]
     pub budget: Budget,
@@ -66,7 +72,7 @@ pub struct SceneFile {
 impl SceneFile {
     /// Whether its light is worked out by its legs, and passes through nothing.
     pub fn is_lit_later(&self) -> bool {
-        self.rsm.is_some() || self.ldm.is_some()
+        self.rsm.is_some() || self.ldm.is_some() || self.dispatch.is_some()
     }
 
     /// Dim light from everywhere and a stronger one from above, behind the
@@ -147,6 +153,9 @@ pub struct MaterialEntry {
     pub colour: Colour,
     /// 1 is opaque, 0 invisible (but still in the lists).
     pub opacity: Share,
+    /// With `[dispatch]`: the part of the light from its mirror direction that it gives back, for each
+    /// colour 0 to 1; none if left out.
+    pub mirror: Option<Shares>,
 }
 
 /// A mesh and where it stands. Exactly one of `file`, `package` and `generate`.

@@ -64,24 +64,44 @@ pub(super) fn flatten(
         background: parsed.file.background.0.map(shade::single),
     };
     let mut primitive = 0;
+    let mut mirrors = Vec::new();
     for mesh in &placed {
         append(&mut scene, parsed, &view, mesh, &mut primitive)?;
+        if parsed.file.dispatch.is_some() {
+            mirrors.extend(mirrored(mesh));
+        }
     }
     // In the order of the scene's own.
     let instances = placed.iter().flat_map(|mesh| &mesh.worlds);
     let instances = instances.copied().collect();
-    Ok((scene, World { camera, instances }))
+    let world = World {
+        camera,
+        instances,
+        mirrors,
+    };
+    Ok((scene, world))
 }
 
-/// Says of each mesh what `[rsm]` and `[ldm]` do not do of what its materials ask for.
+/// What each triangle of a mesh mirrors, in the order in which they are in the scene.
+fn mirrored(mesh: &Placed) -> impl Iterator<Item = [f32; 3]> {
+    let rows = mesh.source.mesh.material.iter();
+    rows.flat_map(|row| {
+        let mirror = mesh.surfaces[*row as usize].mirror.map(shade::single);
+        mesh.worlds.iter().map(move |_| mirror)
+    })
+}
+
+/// Says of each mesh what a scene whose light is worked out later does not do of what its materials
+/// ask for.
 fn remark(
     parsed: &Parsed,
     materials: &Materials,
     sources: &mut [Source],
 ) -> Result<(), InputError> {
-    let section = match parsed.file.ldm {
-        Some(_) => "[ldm]",
-        None => "[rsm]",
+    let section = match (&parsed.file.ldm, &parsed.file.dispatch) {
+        (Some(_), _) => "[ldm]",
+        (None, Some(_)) => "[dispatch]",
+        (None, None) => "[rsm]",
     };
     for (entry, source) in parsed.file.mesh.iter().zip(sources) {
         let surfaces = surfaces(parsed, materials, entry.get_ref(), source)?;

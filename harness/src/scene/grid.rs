@@ -99,7 +99,7 @@ impl Default for Rays {
 /// are seen in its pictures.
 pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     let file = &parsed.file;
-    if file.grid.is_none() || file.rsm.is_some() || file.ldm.is_some() {
+    if file.grid.is_none() || file.is_lit_later() {
         return Ok(());
     }
     let idle = ["camera", "samples", "abuffer", "expect", "budget.vertex"];

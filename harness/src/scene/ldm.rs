@@ -148,6 +148,7 @@ pub(super) fn settle(file: &mut SceneFile) {
 fn without_effect(file: &SceneFile) -> Option<&'static str> {
     let keys = [
         ("[rsm]", file.rsm.is_some()),
+        ("[dispatch]", file.dispatch.is_some()),
         ("[grid]", file.grid.is_some()),
         ("[[light]]", file.light != SceneFile::default_lights()),
         ("samples", file.samples != SampleCount::default()),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
@@ -107,6 +108,24 @@ impl Lines {
     pub fn states(&self, key: &str) -> bool {
         self.0.contains_key(key)
     }
+}
+
+/// The line, from 1, that holds a byte.
+pub(super) fn line_of(lines: &[usize], at: usize) -> usize {
+    lines.partition_point(|start| *start <= at)
+}
+
+/// A file's text.
+pub(super) fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, InputError> {
+    // A byte-order mark means nothing in UTF-8.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|e| {
+        let line = 1 + bytes[..e.valid_up_to()]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count();
+        InputError::at(path, line, "is not UTF-8; a scene.toml is expected")
+    })
 }
 
 #[cfg(test)]

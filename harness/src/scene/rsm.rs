@@ -185,7 +185,7 @@ impl MeshEntry {
 pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     let file = &parsed.file;
     let Some(rsm) = &file.rsm else {
-        if file.ldm.is_some() {
+        if file.is_lit_later() {
             return Ok(());
         }
         let strange = |m: &&Spanned<MeshEntry>| {
@@ -270,6 +270,7 @@ fn without_effect(file: &SceneFile) -> Option<&'static str> {
     let keys = [
         ("[grid]", file.grid.is_some()),
         ("[ldm]", file.ldm.is_some()),
+        ("[dispatch]", file.dispatch.is_some()),
         ("[[light]]", file.light != SceneFile::default_lights()),
         ("samples", file.samples != SampleCount::default()),
         ("[abuffer]", file.abuffer != Abuffer::default()),

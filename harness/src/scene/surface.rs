@@ -16,6 +16,7 @@ use crate::text::plural;
 const DEFAULT: Surface = Surface {
     reflectance: [0.8; 3],
     opacity: 0.5,
+    mirror: [0.0; 3],
     stated: false,
 };
 
@@ -26,6 +27,8 @@ pub(super) struct Surface {
     pub(super) reflectance: [f64; 3],
     /// 1 is opaque.
     pub(super) opacity: f64,
+    /// The part of the light from its mirror direction that it gives back.
+    pub(super) mirror: [f64; 3],
     /// Whether somebody asked for it.
     pub(super) stated: bool,
 }
@@ -40,11 +43,13 @@ pub(super) fn materials<'a>(parsed: &'a Parsed) -> Result<Materials<'a>, InputEr
         name,
         colour,
         opacity,
+        mirror,
     } in &parsed.file.material
     {
         let surface = Surface {
             reflectance: colour.0,
             opacity: opacity.0,
+            mirror: mirror.unwrap_or_default().0,
             stated: true,
         };
         if materials.insert(name.get_ref(), surface).is_some() {
@@ -82,6 +87,7 @@ pub(super) fn surfaces(
             (None, Some((reflectance, opacity))) => Ok(Surface {
                 reflectance,
                 opacity,
+                mirror: [0.0; 3],
                 stated: true,
             }),
             (None, None) => Ok(DEFAULT),
@@ -119,8 +125,8 @@ fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     shown
 }
 
-/// A remark about triangles that are to let light through, and do not in a scene with `[rsm]` or
-/// `[ldm]`.
+/// A remark about triangles that are to let light through, and do not in a scene with `[rsm]`,
+/// `[ldm]` or `[dispatch]`.
 pub(super) fn made_opaque(surfaces: &[Surface], source: &Source, section: &str) -> Option<String> {
     let clear = |row: &&u32| {
         let surface = surfaces[**row as usize];

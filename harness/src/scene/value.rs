@@ -74,6 +74,21 @@ impl TryFrom<Exactly<f64, 3>> for Colour {
     }
 }
 
+/// A share of red, green and blue, each from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(try_from = "Exactly<f64, 3>")]
+pub struct Shares(pub [f64; 3]);
+
+impl TryFrom<Exactly<f64, 3>> for Shares {
+    type Error = String;
+    fn try_from(Exactly(v): Exactly<f64, 3>) -> Result<Self, String> {
+        match v.iter().find(|x| !(0.0..=1.0).contains(*x)) {
+            None => Ok(Self(v)),
+            Some(x) => Err(format!("{x} is outside 0 to 1")),
+        }
+    }
+}
+
 /// A share, from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f64")]

@@ -15,6 +15,8 @@ pub struct World {
     pub camera: Camera,
     /// World from object space, one for each of [`Scene::instances`].
     pub instances: Vec<Matrix>,
+    /// What each of [`Scene::triangles`] mirrors, of a scene with `[dispatch]`; empty otherwise.
+    pub mirrors: Vec<[f32; 3]>,
 }
 
 impl World {
@@ -64,12 +66,19 @@ impl Loaded {
 
     /// As what it is replayed.
     pub fn chain(&self) -> Chain {
-        let SceneFile { ldm, rsm, grid, .. } = &self.file;
-        match (ldm, rsm, grid) {
-            (Some(_), ..) => Chain::Maps,
-            (None, Some(_), _) => Chain::Indirect,
-            (None, None, Some(_)) => Chain::Rays,
-            (None, None, None) => Chain::Frame,
+        let SceneFile {
+            dispatch,
+            ldm,
+            rsm,
+            grid,
+            ..
+        } = &self.file;
+        match (dispatch, ldm, rsm, grid) {
+            (Some(_), ..) => Chain::Traced,
+            (None, Some(_), ..) => Chain::Maps,
+            (None, None, Some(_), _) => Chain::Indirect,
+            (None, None, None, Some(_)) => Chain::Rays,
+            (None, None, None, None) => Chain::Frame,
         }
     }
 

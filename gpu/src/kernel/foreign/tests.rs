@@ -36,6 +36,7 @@ fn every_skeleton_is_a_kernel() {
             stage.name
         );
         let block = match stage.file {
+            "dispatch" => "task: Task",
             "grid" => "cells: Cells",
             "rsm" => "parameters: Parameters",
             "ldm" => "told: Told",

@@ -7,12 +7,12 @@ use triptych_spec::ldm::{Layers, Maps};
 use super::timed;
 use crate::abuffer::PROGRESS;
 use crate::context::Gpu;
-use crate::dispatch::Ready;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
 use crate::ldm::batch::{Span, spans};
 use crate::ldm::device::Device;
 use crate::ldm::{Chains, Link};
+use crate::ready::Ready;
 use crate::timer::Timer;
 
 /// What is timed, in the order of all results here.

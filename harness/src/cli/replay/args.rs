@@ -55,6 +55,10 @@ pub struct Args {
     /// Run every leg again, whether anything changed or not
     #[arg(long)]
     no_cache: bool,
+    /// Threads over which the work of spec and Embree is spread; nothing but time depends on it
+    /// [default: one on each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub(super) threads: Option<u32>,
     /// In place of the scenes' own seeds
     #[arg(long)]
     seed: Option<u64>,

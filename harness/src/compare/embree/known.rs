@@ -5,10 +5,10 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use triptych_spec::raster::Span;
 
 use super::pairs::{Expected, Pairs};
+use crate::dispatch::share;
 
 /// Triangles that one task shares out.
 const SHARED: u32 = 1 << 14;
@@ -21,7 +21,7 @@ impl Shares {
     /// Shares out triangles among bands of `height` rows.
     pub(super) fn new(pairs: &impl Pairs, height: u32) -> Self {
         let bands = pairs.size().height.div_ceil(height) as usize;
-        let share = |part: u32| {
+        let of_part = |part: u32| {
             let first = part * SHARED;
             let mut shares = vec![Vec::new(); bands];
             for prim in first..pairs.count().min(first + SHARED) {
@@ -34,8 +34,11 @@ impl Shares {
             }
             shares
         };
-        let parts = 0..pairs.count().div_ceil(SHARED);
-        Self(parts.into_par_iter().map(share).collect())
+        let parts = pairs.count().div_ceil(SHARED);
+        Self(share::runs(parts as usize, 1, |parts| {
+            let numbers = (0..).skip(parts.start).take(parts.len());
+            numbers.map(of_part).collect()
+        }))
     }
 
     fn of(&self, band: usize) -> impl Iterator<Item = u32> {

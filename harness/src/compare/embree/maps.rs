@@ -19,11 +19,11 @@ mod vote;
 #[cfg(test)]
 mod tests;
 
-use rayon::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{Layers, Map, Maps};
 
 use super::super::ldm::drawn;
+use crate::dispatch::share;
 use crate::embree::rays::RayLists;
 use crate::embree::rays::bound::{self, Met, Pair};
 use crate::embree::{EmbreeError, Hit};
@@ -52,21 +52,18 @@ pub fn compare_maps<E: RayLists>(
     sampled: &[Sampled],
     embree: &E,
 ) -> Result<MapVote, EmbreeError> {
-    let votes: Vec<Result<MapVote, EmbreeError>> = sampled
-        .par_iter()
-        .map(|sampled| {
-            let map = &maps.maps[sampled.map];
-            let judge = Judge {
-                maps,
-                map,
-                layers,
-                blockers,
-                embree,
-                projection: Projection::new(maps, map),
-            };
-            judge.map(*sampled)
-        })
-        .collect();
+    let votes: Vec<Result<MapVote, EmbreeError>> = share::map(sampled, 1, |sampled| {
+        let map = &maps.maps[sampled.map];
+        let judge = Judge {
+            maps,
+            map,
+            layers,
+            blockers,
+            embree,
+            projection: Projection::new(maps, map),
+        };
+        judge.map(*sampled)
+    });
     let mut total = MapVote::default();
     for vote in votes {
         total.add(vote?);

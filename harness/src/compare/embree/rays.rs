@@ -22,12 +22,12 @@
 
 mod vote;
 
-use rayon::prelude::*;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::{self, Query};
 use triptych_spec::grid::walk::Walk;
 use triptych_spec::grid::{Blockers, Grid};
 
+use crate::dispatch::share;
 use crate::embree::rays::RayAnswers;
 use crate::embree::rays::bound::{Met, Pair, pair};
 use crate::embree::{EmbreeError, Hit};
@@ -47,24 +47,21 @@ pub fn compare_rays<E: RayAnswers>(
     query: Query,
     embree: &E,
 ) -> Result<RayVote, EmbreeError> {
-    let chunks: Vec<Result<RayVote, EmbreeError>> = rays
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, rays)| {
-            let mut judge = Judge {
-                grid,
-                blockers,
-                embree,
-                vote: RayVote::default(),
-                listed: Vec::new(),
-            };
-            for (row, ray) in (chunk * CHUNK..).zip(rays) {
-                judge.ray(row, ray, query);
-            }
-            embree.check()?;
-            Ok(judge.vote)
-        })
-        .collect();
+    let chunks: Vec<_> = rays.chunks(CHUNK).enumerate().collect();
+    let chunks: Vec<Result<RayVote, EmbreeError>> = share::map(&chunks, 1, |(chunk, rays)| {
+        let mut judge = Judge {
+            grid,
+            blockers,
+            embree,
+            vote: RayVote::default(),
+            listed: Vec::new(),
+        };
+        for (row, ray) in (chunk * CHUNK..).zip(*rays) {
+            judge.ray(row, ray, query);
+        }
+        embree.check()?;
+        Ok(judge.vote)
+    });
     let mut total = RayVote::default();
     for chunk in chunks {
         total.add(chunk?);

@@ -12,6 +12,7 @@ use triptych_spec::vertex::{DEPTH_ONE, Primitives};
 
 use super::edge::is_edge;
 use super::{EmbreeVote, compare};
+use crate::dispatch::share;
 use crate::embree::{EmbreeScene, ScreenHits};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
@@ -168,11 +169,9 @@ fn nothing_to_compare_is_seen_as_such() {
 fn the_result_does_not_depend_on_threads() {
     let spec = large(50);
     let embree = embree(&spec);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let alone = pool
-        .expect("a pool of one")
-        .install(|| vote(&spec, &embree));
-    assert_eq!(alone, vote(&spec, &embree), "one thread against many");
+    let alone = share::with_threads(1, || vote(&spec, &embree));
+    let many = share::with_threads(5, || vote(&spec, &embree));
+    assert_eq!(alone, many, "one thread against many");
 }
 
 #[test]

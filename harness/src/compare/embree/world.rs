@@ -15,15 +15,19 @@
 //! half a sub-pixel times the slopes of depth on the screen. Floors take off less than a
 //! key at the corners, and less than one more at the sample.
 
-use rayon::prelude::*;
+use rayon::slice::ParallelSliceMut;
 use triptych_spec::raster::{self, Span};
 use triptych_spec::scene::{Scene, Size};
 use triptych_spec::vertex::{self, DEPTH_ONE, Position, Primitives};
 
 use super::pairs::{Class, Expected, Pairs};
 use crate::compare::region::{Columns, Region};
+use crate::dispatch::share;
 use crate::embree::world::World;
 use crate::embree::world::bound::{Promise, promise};
+
+/// Triangles of a piece of work.
+const TRIANGLES: usize = 1 << 12;
 
 /// The spec's coverage by pixel and source triangle, and the exact triangles.
 pub(super) struct InWorld<'a> {
@@ -63,8 +67,11 @@ impl<'a> InWorld<'a> {
             scene,
             world,
             fragments,
-            regions: polygons.offsets.par_windows(2).map(region).collect(),
-            slack: scene.triangles.par_iter().map(slack).collect(),
+            regions: share::runs(polygons.offsets.len() - 1, TRIANGLES, |rows| {
+                rows.map(|row| region(&polygons.offsets[row..row + 2]))
+                    .collect()
+            }),
+            slack: share::map(&scene.triangles, TRIANGLES, slack),
         }
     }
 
@@ -78,7 +85,9 @@ impl<'a> InWorld<'a> {
             all.fold([0.0; 2], |sum, l| [sum[0] + l[0], sum[1] + l[1]])
         };
         // In order: a sum of floats is to be the same in every run.
-        let each: Vec<[f64; 2]> = self.regions.par_iter().flatten().map(lengths).collect();
+        let each = share::map(&self.regions, TRIANGLES, |region| {
+            region.as_ref().map_or([0.0; 2], lengths)
+        });
         let [may, must] = each
             .iter()
             .fold([0.0; 2], |s, l| [s[0] + l[0], s[1] + l[1]]);

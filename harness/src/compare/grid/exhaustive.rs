@@ -1,6 +1,5 @@
 //! What a grid's walk finds, against every triangle.
 
-use rayon::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::grid::hit::crossing;
 use triptych_spec::grid::ray::Ray;
@@ -9,7 +8,11 @@ use triptych_spec::grid::trace::Closest;
 use super::Asked;
 use crate::cause::Cause;
 use crate::compare::Judgement;
+use crate::dispatch::share;
 use crate::row::Class;
+
+/// Rays of a piece of work.
+const RAYS: usize = 256;
 
 /// What a ray meets first of all triangles, whatever any cell lists; of those that are met
 /// at one time, the first.
@@ -25,7 +28,7 @@ fn nearest_of_all(blockers: &Blockers, ray: &Ray) -> Option<Closest> {
 /// What each ray meets first of all triangles. The work is spread over all cores.
 pub fn nearest_of_each(blockers: &Blockers, rays: &[Ray]) -> Vec<Option<Closest>> {
     let nearest = |ray: &Ray| nearest_of_all(blockers, ray);
-    rays.par_iter().map(nearest).collect()
+    share::map(rays, RAYS, nearest)
 }
 
 /// Answers by way of a grid against those by way of none: the same triangle at the same

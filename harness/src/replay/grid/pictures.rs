@@ -1,7 +1,6 @@
 //! Pictures of a grid for the report: what legs see through it, its lists, and where its rays
 //! meet something.
 
-use rayon::prelude::*;
 use triptych_spec::grid::axis::Axis;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::{Query, blocked, closest};
@@ -9,6 +8,7 @@ use triptych_spec::scene::Scene;
 
 use super::spec::GridRun;
 use super::view::{Met, View};
+use crate::dispatch::share;
 use crate::embree::EmbreeError;
 use crate::embree::rays::{RayAnswers, RayScene};
 use crate::picture;
@@ -62,7 +62,7 @@ fn asked(run: &GridRun, rays: &[Ray], query: Query) -> Met {
             Some((first.prim, first.time.value()))
         }
     };
-    rays.par_iter().map(met).collect()
+    share::map(rays, 1024, met)
 }
 
 /// What Embree sees, if anyone looks.

@@ -2,17 +2,20 @@
 
 use std::time::Duration;
 
-use rayon::prelude::*;
 use triptych_spec::grid::lattice::{Lattice, LatticeError};
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::{Closest, trace};
 use triptych_spec::grid::{Blockers, Cells, Grid, GridError, Membership, axes, count, fill, scan};
 
 use crate::compare::grid::Runs;
+use crate::dispatch::share;
 use crate::rays::{Kind, draw};
 use crate::replay::spec::timed;
 use crate::replay::work::{self, Meter, WORK_MAX};
 use crate::scene::{Loaded, Mistake};
+
+/// Rays of a piece of work.
+const RAYS: usize = 1024;
 
 /// How much of the lattice is left around the blockers, for rays that start there: an eighth
 /// of their box on each side.
@@ -88,7 +91,7 @@ impl GridRun {
         };
         let (rays, ends) = draw(&blockers, &grid, loaded.file.seed, &section.rays);
         within(&grid, &rays)?;
-        let (answers, trace) = timed(|| trace(&grid, &blockers, &rays));
+        let (answers, trace) = timed(|| traced(&grid, &blockers, &rays));
         Ok(Self {
             lattice,
             blockers,
@@ -111,7 +114,7 @@ impl GridRun {
     /// Adds rays that a scene file cannot draw, after those of all kinds.
     #[must_use]
     pub fn asking(mut self, own: Vec<Ray>) -> Self {
-        let (answers, time) = timed(|| trace(&self.grid, &self.blockers, &own));
+        let (answers, time) = timed(|| traced(&self.grid, &self.blockers, &own));
         self.times.trace += time;
         self.rays.extend(own);
         self.answers.extend(answers);
@@ -141,6 +144,11 @@ fn runs(grid: &Grid) -> Runs<'_> {
     }
 }
 
+/// Stage trace, rays in runs.
+fn traced(grid: &Grid, blockers: &Blockers, rays: &[Ray]) -> Vec<Option<Closest>> {
+    share::runs(rays.len(), RAYS, |run| trace(grid, blockers, &rays[run]))
+}
+
 /// Refuses rays that would take too long.
 fn within(grid: &Grid, rays: &[Ray]) -> Result<(), Mistake> {
     let asked = rays.len() as u64;
@@ -150,7 +158,7 @@ fn within(grid: &Grid, rays: &[Ray]) -> Result<(), Mistake> {
     }
     let meter = Meter::new(WORK_MAX);
     let takes = |ray: &Ray| meter.takes(work::of(grid, *ray).total());
-    match rays.par_iter().all(takes) {
+    match share::all(rays.len(), RAYS, |at| takes(&rays[at])) {
         true => Ok(()),
         false => Err(Mistake::of(
             "grid.rays",

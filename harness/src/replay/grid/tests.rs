@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::*;
 use crate::corpus::Entry;
+use crate::dispatch::share;
 use crate::mesh::Intake;
 use crate::rays::Kind;
 use crate::scene::{Loaded, load_text};
@@ -38,9 +39,8 @@ fn rays_through_many_long_lists_are_refused() {
     let random = [40_000, 0, 0, 0, 0, 0];
     let loaded = scene(2048, random);
     let told = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let run = || GridRun::new(&loaded).map(|_| ());
-        pool.expect("threads").install(run).expect_err("too much")
+        share::with_threads(threads, run).expect_err("too much")
     };
     let mistake = told(1);
     assert_eq!(mistake.key.and_then(|key| loaded.lines.of(key)), Some(8));

@@ -7,13 +7,13 @@
 
 use std::f64::consts::TAU;
 
-use rayon::prelude::*;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::ldm::{Falloff, Map, WEIGHT_BITS, weight};
 
 use super::setup::{Asker, Setup};
 use super::spec::LdmRun;
 use crate::compare::embree::{MapVote, Sampled, compare_maps};
+use crate::dispatch::share;
 use crate::embree::rays::{RayAnswers, RayScene};
 use crate::embree::{EmbreeError, Hit};
 use crate::generate::Random;
@@ -119,8 +119,8 @@ fn off(run: &LdmRun, seed: u64, scene: &RayScene) -> Result<Option<Off>, EmbreeE
         let (random, variance) = random(&run.setup, asker, (seed, SAMPLES), scene);
         scene.check().map(|()| [own - same, own - random, variance])
     };
-    let found: Result<Vec<[f64; 3]>, EmbreeError> = chosen.par_iter().map(one).collect();
-    let found = found?;
+    let found: Vec<Result<[f64; 3], EmbreeError>> = share::map(&chosen, 16, one);
+    let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
     if found.is_empty() {
         return Ok(None);
     }

@@ -1,12 +1,12 @@
 //! What all maps of a scene together may take, counted before any is drawn.
 
-use rayon::prelude::*;
 use triptych_spec::grid::Blockers;
 use triptych_spec::ldm::{Map, Maps};
 use triptych_spec::raster::count;
 
 use super::setup::Turn;
 use crate::compare::ldm::drawn;
+use crate::dispatch::share;
 use crate::replay::work::Meter;
 use crate::scene::Mistake;
 
@@ -46,18 +46,18 @@ pub(super) fn check(blockers: &Blockers, turns: &[Turn]) -> Result<(), Mistake> 
     if triangles.saturating_mul(maps) > MAP_ROWS_MAX {
         return Err(too_many());
     }
-    let each = || {
-        let of = |turn: &'_ Turn| (0..turn.maps.maps.len()).collect::<Vec<_>>();
-        let all = turns.par_iter();
-        all.flat_map_iter(move |turn| of(turn).into_iter().map(move |map| (&turn.maps, map)))
-    };
+    let each = turns
+        .iter()
+        .flat_map(|turn| turn.maps.maps.iter().map(move |map| (&turn.maps, map)));
+    let each: Vec<(&Maps, &Map)> = each.collect();
     let meter = Meter::new(MAP_ROWS_MAX);
-    if !each().all(|(maps, map)| meter.takes(rows(maps, &maps.maps[map], blockers))) {
+    let within = |(maps, map): (&Maps, &Map)| meter.takes(rows(maps, map, blockers));
+    if !share::all(each.len(), 1, |at| within(each[at])) {
         return Err(too_many());
     }
     let meter = Meter::new(MAP_KEYS_MAX);
-    let keys = |(maps, map): (&Maps, usize)| count(&drawn(maps, &maps.maps[map], blockers));
-    match each().all(|map| meter.takes(keys(map))) {
+    let keys = |(maps, map): (&Maps, &Map)| count(&drawn(maps, map, blockers));
+    match share::all(each.len(), 1, |at| meter.takes(keys(each[at]))) {
         true => Ok(()),
         false => Err(Mistake::of(
             "ldm.resolution",

@@ -85,7 +85,7 @@ impl Setup {
         let section = loaded.file.ldm.as_ref();
         let section = section.ok_or_else(|| "has no [ldm]".to_owned())?.get_ref();
         let camera = loaded.world.camera;
-        let lattice = placed::lattice(loaded, 1, &[&camera])?;
+        let lattice = placed::lattice(loaded, 1, &[&camera], &[])?;
         let (model, blockers) = placed::parts(loaded, &lattice, 0)?;
         let eye = View::new(&camera, &lattice, loaded.scene.size);
         let eye = eye.map_err(|e| told(&e, &lattice))?;

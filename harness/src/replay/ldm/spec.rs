@@ -4,17 +4,16 @@ use std::time::Duration;
 
 use triptych_spec::bound::{Bounded, Real};
 use triptych_spec::ldm::{
-    self, Hits, Layers, Map, Maps, Mirrored, Open, environment, layers, mirror, nearness,
-    neighbours, occlusion, openness, weight,
+    self, Hits, Layers, Map, Maps, Mirrored, Open, nearness, neighbours, openness, weight,
 };
 use triptych_spec::rsm::{Colour, DARK};
 
 use super::limits;
 use super::setup::{Setup, Turn};
 use super::tally::Tally;
+use super::turned::render;
 use crate::plan::LdmPlan;
 use crate::replay::rows::Spot;
-use crate::replay::spec::timed;
 use crate::report::Picture;
 use crate::scene::{Loaded, Mistake};
 
@@ -176,59 +175,6 @@ impl LdmTurn {
         let of = of.filter(|(_, (_, lit))| **lit);
         of.map(|((map, hits), (sky, _))| (*map, *hits, sky))
     }
-}
-
-/// A rotation's maps, and what every receiver makes of them, one after another: what they find is
-/// counted and hashed, and not held.
-fn render(
-    setup: &Setup,
-    turn: Turn,
-    [with_light, mirrors]: [bool; 2],
-    tally: &mut Tally,
-    times: &mut Times,
-) -> Result<LdmTurn, Mistake> {
-    let (layers, at) = timed(|| layers(&turn.maps, &setup.blockers));
-    times.layers += at;
-    let layers = layers.map_err(|e| e.to_string())?;
-    let Turn { maps, sky, lit } = turn;
-    tally.map(&maps, &layers);
-    tally.dark += lit.iter().filter(|lit| !**lit).count() as u64;
-    let mut turn = LdmTurn {
-        maps,
-        layers,
-        sky,
-        lit,
-        open: Vec::with_capacity(setup.receivers.len()),
-        light: Vec::new(),
-        mirrored: Vec::new(),
-    };
-    for asker in &setup.receivers {
-        let receiver = &asker.receiver;
-        let (found, at) = timed(|| turn.hits(receiver).collect::<Vec<_>>());
-        times.neighbours += at;
-        tally.hits(found.iter().map(|(_, hits)| hits));
-        let hits = || found.iter().copied();
-        let (open, at) = timed(|| occlusion(hits(), receiver.normal, setup.falloff));
-        times.occlusion += at;
-        let light = with_light.then(|| {
-            let lit = turn.lit_hits(&found);
-            timed(|| environment(lit, receiver.normal, setup.directions))
-        });
-        let mirrored = mirrors.then(|| {
-            let all = turn.all_hits(&found);
-            timed(|| mirror(all, receiver.normal, asker.view))
-        });
-        turn.open.push(open);
-        if let Some((light, at)) = light {
-            times.environment += at;
-            turn.light.push(light);
-        }
-        if let Some((mirrored, at)) = mirrored {
-            times.mirror += at;
-            turn.mirrored.push(mirrored);
-        }
-    }
-    Ok(turn)
 }
 
 /// What is mirrored in the nearest direction of all rotations; of equals in the first.

@@ -3,13 +3,15 @@
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use triptych_spec::abuffer::{self, LAYERS_MAX, Lens, Sorted, Target};
+use triptych_spec::abuffer::{self, LAYERS_MAX, Lens, Opaque, Sorted, Target};
 use triptych_spec::bound::Bounded;
 use triptych_spec::layouts;
 use triptych_spec::scene::Scene;
+use triptych_spec::vertex::Primitives;
 
 use super::reduced::Halved;
 use crate::plan::Asked;
+use crate::replay::pieces;
 use crate::replay::spec::{SpecRun, timed};
 
 /// A picture.
@@ -143,13 +145,17 @@ impl Rivals {
             Target::Single => &self.single,
             Target::Half => &self.half,
         };
-        of.get_or_init(|| picture(|| abuffer::alpha(scene, &spec.primitives, &spec.opaque, target)))
+        let alpha =
+            |prims: &Primitives, opaque: &Opaque| abuffer::alpha(scene, prims, opaque, target);
+        of.get_or_init(|| picture(|| pieces::picture(&spec.primitives, &spec.opaque, alpha)))
     }
 
     /// Stage `weighted`.
     pub fn weighted(&self, scene: &Scene, spec: &SpecRun) -> &Picture {
-        self.weighted
-            .get_or_init(|| picture(|| abuffer::weighted(scene, &spec.primitives, &spec.opaque)))
+        let weighted =
+            |prims: &Primitives, opaque: &Opaque| abuffer::weighted(scene, prims, opaque);
+        let made = || picture(|| pieces::picture(&spec.primitives, &spec.opaque, weighted));
+        self.weighted.get_or_init(made)
     }
 
     /// Stage `density` and its density, if there is one.

@@ -8,7 +8,6 @@
 
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
 use triptych_spec::bound::Bounded;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
@@ -17,8 +16,12 @@ use triptych_spec::rsm::{Colour, Frame, Light, Setting, blur};
 use super::kernel::{of_coarse, pairs};
 use super::spec::{RsmFrame, RsmRun, composed};
 use crate::compare::embree::{RayVote, compare_rays};
+use crate::dispatch::share;
 use crate::embree::EmbreeError;
 use crate::embree::rays::{RayAnswers, RayScene};
+
+/// Pixels of a piece of work.
+const PIXELS: usize = 64;
 
 /// Rays that are gathered before they are judged.
 const BATCH: usize = 1 << 16;
@@ -139,7 +142,7 @@ impl<E: RayAnswers> Asked<'_, E> {
             let colour = of(pixel);
             self.scene.check().map(|()| colour)
         };
-        let found: Vec<Result<_, _>> = (0..pixels).into_par_iter().map(pixel).collect();
+        let found = share::runs(pixels, PIXELS, |pixels| pixels.map(pixel).collect());
         found.into_iter().collect()
     }
 

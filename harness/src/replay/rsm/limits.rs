@@ -1,6 +1,5 @@
 //! What all frames of a scene together may take.
 
-use rayon::prelude::*;
 use triptych_spec::grid::ENTRIES_MAX;
 use triptych_spec::raster::count;
 use triptych_spec::rsm::{Frame, Light, Setting};
@@ -8,9 +7,13 @@ use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::kernel::{of_coarse, pairs};
 use super::setup::{Parts, Setup};
+use crate::dispatch::share;
 use crate::replay::spec::FRAGMENTS_MAX;
 use crate::replay::work::{self, Meter, WORK_MAX, Work};
 use crate::scene::Mistake;
+
+/// Pixels of a piece of work.
+const PIXELS: usize = 64;
 
 /// How many entries of lists Embree makes up for in the time in which the spec tests one. Measured
 /// on rays of stage `block`: 9 for the bunny, where it mostly passes boxes, 16 for slivers, and 145
@@ -105,7 +108,7 @@ impl Limits {
             asked.all(|pair| self.meter.takes(self.of(work::of(setting.grid, pair.ray))))
         };
         let pixels = frame.coarse.size.pixels();
-        match (0..pixels).into_par_iter().all(pixel) {
+        match share::all(pixels, PIXELS, pixel) {
             true => Ok(()),
             false => Err(Mistake::of(
                 "rsm",

@@ -57,7 +57,7 @@ impl Setup {
         let rsm = rsm.ok_or_else(|| "has no [rsm]".to_owned())?.get_ref();
         let eye = loaded.world.camera;
         let light = rsm.lamp.get_ref().camera()?;
-        let lattice = placed::lattice(loaded, rsm.frames.0, &[&eye, &light])?;
+        let lattice = placed::lattice(loaded, rsm.frames.0, &[&eye, &light], &[])?;
         let told = Told {
             rsm,
             light: &light,

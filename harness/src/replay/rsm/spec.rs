@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use triptych_spec::rsm::{
-    Blocked, Coarse, Colour, DARK, Frame, Setting, block, blur, compose, direct, gather, gbuffer,
-    place, rsm,
+    Blocked, Coarse, Colour, DARK, Frame, Setting, blur, compose, direct, gbuffer, place, rsm,
 };
 
 use super::limits::Limits;
 use super::setup::{Parts, Setup};
+use super::shared::{blocked, gathered};
 use crate::plan::RsmPlan;
 use crate::replay::rows::Spot;
 use crate::replay::spec::timed;
@@ -176,7 +176,7 @@ fn render(
     let (lights, size) = (rsm.lights(), rsm.seen.size);
     let (direct, at) = timed(|| direct(model, &seen, &places, lamp, &rsm.seen.keys, parameters));
     times.direct = at;
-    let (all, at) = timed(|| gather(model, &seen, &places, &lights, size, parameters));
+    let (all, at) = timed(|| gathered(model, &seen, &places, &lights, size, parameters));
     times.gather = at;
     let coarse = Coarse::new(&seen, parameters);
     let mut frame = Frame {
@@ -195,7 +195,7 @@ fn render(
         let Frame { seen, places, .. } = &frame;
         let cells = (*grid, *blockers);
         (frame.blocked, times.block) =
-            timed(|| block(model, seen, places, &lights, size, cells, parameters));
+            timed(|| blocked(model, seen, places, &lights, size, cells, parameters));
     }
     (frame.blurred, times.blur) = match plan.skipped("blur") {
         None => timed(|| blur(model, &frame.coarse, &frame.blocked.light, parameters)),

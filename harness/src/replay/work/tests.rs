@@ -4,6 +4,7 @@ use triptych_spec::grid::resolution::Resolution;
 use triptych_spec::grid::{Blockers, Membership};
 
 use super::*;
+use crate::dispatch::share;
 
 /// As many triangles across all of the cells of one row.
 fn row(cells: u32, triangles: u32) -> Grid {
@@ -34,13 +35,11 @@ fn a_list_counts_in_every_cell() {
 
 #[test]
 fn all_parts_count_on_any_number_of_threads() {
-    use rayon::prelude::*;
     for threads in [1, 2, 7] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads").install(|| {
+        share::with_threads(threads, || {
             for (limit, fits) in [(4950, true), (4949, false)] {
                 let meter = Meter::new(limit);
-                let all = (0_u64..100).into_par_iter().all(|part| meter.takes(part));
+                let all = share::all(100, 1, |part| meter.takes(part as u64));
                 assert_eq!(all, fits, "{limit} on {threads}");
             }
         });

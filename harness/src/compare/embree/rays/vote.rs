@@ -130,7 +130,7 @@ impl RayVote {
     }
 
     /// Adds the rays that follow, which are all of a kind and counted from 0.
-    pub(super) fn add_kind(&mut self, name: &'static str, mut next: Self, before: usize) {
+    pub(crate) fn add_kind(&mut self, name: &'static str, mut next: Self, before: usize) {
         let (asked, edge) = (next.rays - next.still, next.edge);
         if asked > 0 {
             next.kinds.push(OfKind { name, asked, edge });

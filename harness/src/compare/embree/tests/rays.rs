@@ -11,6 +11,7 @@ use triptych_spec::grid::{Blockers, Grid, Membership};
 
 use super::Random;
 use crate::compare::embree::{OfKind, RayVote, compare_kinds, compare_rays};
+use crate::dispatch::share;
 use crate::embree::rays::bound::{Pair, pair};
 use crate::embree::rays::{RayAnswers, RayScene};
 use crate::embree::{EmbreeError, Hit};
@@ -248,10 +249,8 @@ fn rays_that_do_not_move_are_not_asked() {
 fn the_result_does_not_depend_on_threads() {
     let (scene, rays) = (soup(), anywhere(20_000));
     let late = scene.changed(|_, hit| hit.map(|hit| Hit { prim: 0, ..hit }));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let pool = pool.expect("a pool of one");
-    let alone = pool.install(|| scene.against(&rays, Query::Closest, &late));
-    let many = scene.against(&rays, Query::Closest, &late);
+    let asked = || scene.against(&rays, Query::Closest, &late);
+    let [alone, many] = [1, 5].map(|threads| share::with_threads(threads, asked));
     assert!(many.disagree > 1000 && many.first.len() == 4, "{many}");
     assert_eq!(alone, many, "one thread against many");
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::*;
 use crate::corpus::Entry;
+use crate::dispatch::share;
 use crate::mesh::Intake;
 use crate::replay::rsm::{RsmRun, Setup};
 use crate::scene::{Loaded, load_text};
@@ -89,10 +90,7 @@ fn the_rays_of_embree_count_as_well() {
                   blocks = true\n[[mesh]]\ngenerate.box = { size = [4, 4, 4] }\nseen = false\n\
                   blocks = true";
     let loaded = scene([64, 64], "radius = 64\ndivisor = 64", specks);
-    let told = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads").install(|| refused(&loaded))
-    };
+    let told = |threads| share::with_threads(threads, || refused(&loaded));
     let error = told(1);
     assert!(
         error.starts_with("rsm: the rays of all frames pass more than 34359738368 cells"),

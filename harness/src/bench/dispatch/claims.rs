@@ -1,0 +1,227 @@
+//! What the paper claims of its queues (section 5.2), and what of it holds here.
+
+use super::{Measured, Method, Row};
+
+/// The scene for which work cannot be dealt evenly beforehand.
+const UNEVEN: &str = "dispatch/uneven";
+
+/// Frames per second that differ by less are taken for the same.
+const SAME: f64 = 0.05;
+
+/// A claim and what was seen.
+pub(super) struct Claim {
+    /// In the paper's words, shortened.
+    pub(super) says: &'static str,
+    /// Whether it holds; `None` if it cannot be told from these rows.
+    pub(super) holds: Option<bool>,
+    /// The figures.
+    pub(super) seen: String,
+}
+
+/// All of them.
+pub(super) fn claims(measured: &Measured) -> Vec<Claim> {
+    vec![
+        best(measured),
+        idles(measured),
+        alike(measured),
+        ahead(measured),
+        grows(measured),
+        efficiency(measured),
+        uneven(measured),
+    ]
+}
+
+/// The paper's kind of scenes.
+fn even(measured: &Measured) -> Vec<&str> {
+    let mut scenes = measured.scenes();
+    scenes.retain(|scene| *scene != UNEVEN);
+    scenes
+}
+
+/// Rows of the paper's queues on a scene with so many threads: LOCK, LFREE, LOCAL.
+fn three<'m>(measured: &'m Measured, scene: &str, threads: usize) -> Option<[&'m Row; 3]> {
+    let [lock, lfree, local] = Method::PAPERS.map(|m| measured.row(scene, m, threads));
+    Some([lock?, lfree?, local?])
+}
+
+/// The same of all scenes of the paper's kind and all numbers of threads.
+fn all(measured: &Measured) -> Vec<(usize, [&Row; 3])> {
+    let threads = measured.threads();
+    let scenes = even(measured).into_iter();
+    let pairs = scenes.flat_map(|scene| threads.iter().map(move |t| (scene, *t)));
+    pairs
+        .filter_map(|(scene, threads)| Some((threads, three(measured, scene, threads)?)))
+        .collect()
+}
+
+fn best(measured: &Measured) -> Claim {
+    let all = all(measured);
+    let lead = |[lock, lfree, local]: &[&Row; 3]| {
+        local.fps.median / lock.fps.median.max(lfree.fps.median) - 1.0
+    };
+    let leads: Vec<f64> = all.iter().map(|(_, rows)| lead(rows)).collect();
+    let ahead = leads.iter().filter(|lead| **lead > SAME).count();
+    let behind = leads.iter().filter(|lead| **lead < -SAME).count();
+    let least = leads.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = leads.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Claim {
+        says: "N23: LOCAL outperforms the other two under all settings",
+        holds: (!leads.is_empty()).then_some(ahead == leads.len()),
+        seen: format!(
+            "more than 5 % ahead of the better of the two in {ahead} of {} settings, behind in {behind}; \
+             {:+.0} % to {:+.0} %",
+            leads.len(),
+            100.0 * least,
+            100.0 * most
+        ),
+    }
+}
+
+fn idles(measured: &Measured) -> Claim {
+    let threads = measured.threads().pop().unwrap_or(0);
+    let idle = |row: &Row| row.spent.map_or(0.0, |spent| spent.idle);
+    let access = |row: &Row| row.spent.map_or(0.0, |spent| spent.access);
+    let rows = all(measured);
+    let rows: Vec<_> = rows.iter().filter(|(t, _)| *t == threads).collect();
+    let more = rows
+        .iter()
+        .filter(|(_, [lock, lfree, local])| idle(local) > idle(lock).max(idle(lfree)));
+    let told = rows.iter().map(|(_, [lock, lfree, local])| {
+        format!(
+            "{}: idle {:.2}, {:.2}, {:.2} ms; access {:.2}, {:.2}, {:.3} ms",
+            local.scene,
+            idle(lock),
+            idle(lfree),
+            idle(local),
+            access(lock),
+            access(lfree),
+            access(local)
+        )
+    });
+    Claim {
+        says: "N23: LOCAL idles slightly more, and its access time is negligible",
+        holds: (!rows.is_empty()).then_some(2 * more.count() > rows.len()),
+        seen: format!(
+            "with {threads} threads, LOCK, LFREE, LOCAL: {}",
+            told.collect::<Vec<_>>().join("; ")
+        ),
+    }
+}
+
+fn ratio([lock, lfree, _]: &[&Row; 3]) -> f64 {
+    lfree.fps.median / lock.fps.median
+}
+
+fn alike(measured: &Measured) -> Claim {
+    let ratios = all(measured).into_iter().filter(|(t, _)| *t <= 8);
+    let ratios: Vec<f64> = ratios.map(|(_, rows)| ratio(&rows)).collect();
+    let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = ratios.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Claim {
+        says: "N24: LOCK and LFREE are very similar up to 8 threads",
+        holds: (!ratios.is_empty()).then_some(least >= 0.9 && most <= 1.1),
+        seen: format!("LFREE's frames a second are {least:.2} to {most:.2} of LOCK's"),
+    }
+}
+
+fn ahead(measured: &Measured) -> Claim {
+    let most = measured.threads().pop().unwrap_or(0);
+    let ratios = all(measured).into_iter().filter(|(t, _)| *t == most);
+    let ratios: Vec<f64> = ratios.map(|(_, rows)| ratio(&rows)).collect();
+    let told: Vec<String> = ratios.iter().map(|ratio| format!("{ratio:.2}")).collect();
+    Claim {
+        says: "N24: LFREE clearly outperforms LOCK with 24 threads",
+        holds: (most >= 24 && !ratios.is_empty())
+            .then(|| ratios.iter().all(|ratio| *ratio > 1.0 + SAME)),
+        seen: format!(
+            "with {most} threads LFREE's frames a second are {} of LOCK's",
+            told.join(", ")
+        ),
+    }
+}
+
+/// How an access time grows from one number of threads to another: the power of their ratio.
+fn power(from: (usize, f64), to: (usize, f64)) -> f64 {
+    (to.1 / from.1).ln() / (to.0 as f64 / from.0 as f64).ln()
+}
+
+fn grows(measured: &Measured) -> Claim {
+    let mut told = Vec::new();
+    let mut holds = true;
+    for scene in even(measured) {
+        let of = |method| {
+            let rows = measured
+                .rows
+                .iter()
+                .filter(move |r| r.scene == scene && r.method == method);
+            let times = rows.filter_map(|row| Some((row.threads, row.spent?.access)));
+            times.collect::<Vec<(usize, f64)>>()
+        };
+        for (method, sublinear) in [(Method::Lock, false), (Method::Lfree, true)] {
+            let times = of(method);
+            let (Some(first), Some(last)) = (times.first(), times.last()) else {
+                continue;
+            };
+            let power = power(*first, *last);
+            holds &= (power < 1.0) == sublinear;
+            told.push(format!(
+                "{scene} {}: {:.2} ms with {}, {:.2} with {} threads, power {power:.2}",
+                method.name(),
+                first.1,
+                first.0,
+                last.1,
+                last.0
+            ));
+        }
+    }
+    Claim {
+        says: "N25: access time grows exponentially with LOCK, sublinearly with LFREE",
+        holds: (!told.is_empty()).then_some(holds),
+        seen: told.join("; "),
+    }
+}
+
+fn efficiency(measured: &Measured) -> Claim {
+    let cores = measured.machine.cores;
+    let rows = all(measured).into_iter().filter(|(t, _)| *t == cores);
+    let shares: Vec<f64> = rows
+        .map(|(_, [.., local])| local.speed_up.median / cores as f64)
+        .collect();
+    let told: Vec<String> = shares
+        .iter()
+        .map(|s| format!("{:.0} %", 100.0 * s))
+        .collect();
+    Claim {
+        says: "N26: efficiency is under 50 % on 24 cores",
+        holds: (cores >= 16 && !shares.is_empty()).then(|| shares.iter().all(|s| *s < 0.5)),
+        seen: format!(
+            "LOCAL with a thread for each of {cores} cores: {}",
+            told.join(", ")
+        ),
+    }
+}
+
+fn uneven(measured: &Measured) -> Claim {
+    let mut told = Vec::new();
+    let mut holds = true;
+    let threads = measured.threads();
+    let several = threads
+        .iter()
+        .filter(|t| (2..=measured.machine.cores).contains(*t));
+    for threads in several.filter(|t| t.is_power_of_two()) {
+        let Some([_, lfree, local]) = three(measured, UNEVEN, *threads) else {
+            continue;
+        };
+        let ratio = local.fps.median / lfree.fps.median;
+        holds &= ratio < 1.0 - SAME;
+        told.push(format!("{ratio:.2} with {threads}"));
+    }
+    Claim {
+        says: "N27: LOCAL suffers where the depth of ray trees is very uneven",
+        holds: (!told.is_empty()).then_some(holds),
+        seen: format!(
+            "on {UNEVEN} LOCAL's frames a second over LFREE's: {}",
+            told.join(", ")
+        ),
+    }
+}
