@@ -11,6 +11,8 @@ mod records;
 mod stages;
 mod timed;
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::dispatch::{Eye, Met, Ray, Sums, World};
 use triptych_spec::rsm::Surface as SpecSurface;
@@ -109,6 +111,9 @@ pub struct Overflow {
     pub attempts: u32,
     /// Those that were: some of all, in any order.
     pub rays: Vec<Ray>,
+    /// Rows of the rays that asked for them, as a stage goes through many in parts; none in a frame of the
+    /// device's own.
+    pub asked: Range<usize>,
 }
 
 /// What a stage appended to a queue.

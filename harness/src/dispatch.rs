@@ -9,6 +9,7 @@
 
 pub mod crew;
 pub mod film;
+mod gate;
 pub mod queue;
 pub mod render;
 pub mod share;

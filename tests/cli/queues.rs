@@ -130,24 +130,29 @@ fn the_specs_share_is_measured() {
 #[test]
 fn what_cannot_be_traced_is_refused() {
     let place = Place::new("dispatch-mistakes");
+    let lamp = "[[dispatch.lamp]]\nposition = [0.5, 1, 1]\nstrength = [1, 1, 1]\n";
+    let section = format!("[dispatch]\ndepth = 5\n{lamp}");
     let cases = [
-        ("depth = 5", "depth = 65", ":29: 65 is outside 0 to 64"),
+        ("depth = 5", "depth = 65", ":25: 65 is outside 0 to 64"),
         (
             "mirror = [0.9",
             "mirror = [1.9",
-            ":18: 1.9 is outside 0 to 1",
+            ":17: 1.9 is outside 0 to 1",
         ),
-        ("strength = [1", "strength = [1e7", "its light may reach"),
-        ("[0.1, 0.2, 0.3]", "[2e6, 0, 0]", "background"),
         (
-            "[dispatch]\ndepth = 5\n[[dispatch.lamp]]",
-            "[[light]]\n[ldm]\n[[x]]",
-            "unknown field",
+            "strength = [1",
+            "strength = [9e5",
+            ":26: dispatch.lamp: its light may reach 2.304e8",
         ),
         (
             "[dispatch]",
             "[grid]\n[dispatch]",
-            "[grid] has no effect on a scene with [dispatch]",
+            ":25: [grid] has no effect on a scene with [dispatch]",
+        ),
+        (
+            &section,
+            "",
+            ":14: `mirror` of a material is for scenes with [dispatch]",
         ),
     ];
     for (number, (from, to, told)) in cases.into_iter().enumerate() {
@@ -157,5 +162,44 @@ fn what_cannot_be_traced_is_refused() {
         let ran = place.run(&["replay", "--leg", "spec", &name]).expect(2);
         assert!(ran.stderr.contains(told), "{number}: {}", ran.stderr);
         assert_eq!(ran.stderr.trim().lines().count(), 1, "{}", ran.stderr);
+    }
+}
+
+/// A stage that a scene leaves nothing to do has nothing to be compared, and says so.
+#[test]
+fn scenes_with_nothing_for_a_stage_agree() {
+    let place = Place::new("dispatch-idle");
+    let cases = [
+        (
+            "nothing in sight",
+            "target = [0, 0, 0]",
+            "target = [0, 0.4, 9]",
+        ),
+        (
+            "lamps behind all that is seen",
+            "position = [0.5, 1, 1]",
+            "position = [0, 0, -9]",
+        ),
+        ("nothing that mirrors", "mirror = [0.9, 0.8, 0.7]\n", ""),
+    ];
+    for (number, (what, from, to)) in cases.into_iter().enumerate() {
+        assert!(MIRRORS.contains(from), "{from}");
+        let name = format!("own/{number}.toml");
+        let scene = MIRRORS
+            .replace(from, to)
+            .replace(", { translate = [0, 0, 3] }", "");
+        place.write(&name, &scene);
+        let command = [
+            "replay",
+            "--no-skip",
+            "--leg",
+            "spec",
+            "--leg",
+            "gpu",
+            &name,
+        ];
+        let ran = place.run(&command).expect(0);
+        let said = "the spec has no such ray, and neither has the leg";
+        assert!(ran.stdout.contains(said), "{what}: {}", ran.stdout);
     }
 }

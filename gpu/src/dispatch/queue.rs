@@ -139,6 +139,7 @@ impl Queue {
             capacity: self.capacity,
             attempts,
             rays: self.read(gpu, self.capacity)?,
+            asked: 0..0,
         }))
     }
 }

@@ -142,15 +142,21 @@ impl<'g> Stages<'g> {
         self.time = Duration::ZERO;
         let batch = self.device.batch() as usize;
         let mut all = Appended::default();
-        for (rays, seen) in rays.chunks(batch).zip(seen.chunks(batch)) {
+        let parts = rays.chunks(batch).zip(seen.chunks(batch));
+        for (number, (rays, seen)) in parts.enumerate() {
             let queue = self.given(rays, None)?;
+            let first = number * batch;
             let packed = seen.iter().map(|s| Surface::packed(s.as_ref()));
             let packed: Vec<Surface> = packed.collect();
             let surfaces = self.device.gpu.upload("surfaces", &packed)?;
             let (next, overflows) = self.filled(entry, &queue, &surfaces, capacity)?;
             let count = next.items(self.device.gpu)?;
             all.rays.extend(next.read(self.device.gpu, count)?);
-            all.overflows.extend(overflows);
+            all.overflows
+                .extend(overflows.into_iter().map(|tried| Overflow {
+                    asked: first..first + rays.len(),
+                    ..tried
+                }));
         }
         Ok(all)
     }

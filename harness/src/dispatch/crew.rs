@@ -3,10 +3,11 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Barrier, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::gate::{End, Gate};
 use super::queue::outstanding::Outstanding;
 use super::queue::{Queue, Worker};
 
@@ -97,9 +98,7 @@ struct Shared<'a, Q, W> {
     work: W,
     crew: Crew,
     outstanding: Outstanding,
-    barrier: Barrier,
-    /// The paper's `END`.
-    over: AtomicBool,
+    gate: Gate,
     /// What a task panicked with; the frame is then given up.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
     given_up: AtomicBool,
@@ -118,7 +117,7 @@ impl Crew {
     /// Does some tasks, and those that they add, and returns when all are done.
     ///
     /// # Panics
-    /// With what a task panics with.
+    /// With what a task panics with, and if the system starts no more threads.
     pub fn run<T: Send, Q: Queue<T>>(
         self,
         queue: &Q,
@@ -135,7 +134,7 @@ impl Crew {
     /// thread spent, in order of their numbers.
     ///
     /// # Panics
-    /// With what a task panics with.
+    /// With what a task, `first` or `finish` panics with, and if the system starts no more threads.
     pub fn frames<T: Send, Q: Queue<T>, I: IntoIterator<Item = T>>(
         self,
         queue: &Q,
@@ -149,30 +148,31 @@ impl Crew {
             work,
             crew: self,
             outstanding: Outstanding::new(),
-            barrier: Barrier::new(self.threads + 1),
-            over: AtomicBool::new(false),
+            gate: Gate::default(),
             panic: Mutex::new(None),
             given_up: AtomicBool::new(false),
         };
         thread::scope(|scope| {
             let shared = &shared;
-            let threads = 0..self.threads;
-            let threads: Vec<_> = threads
-                .map(|number| scope.spawn(move || shared.thread(number)))
-                .collect();
+            let end = End(&shared.gate);
+            let spawn = |number| {
+                let thread = thread::Builder::new();
+                let thread = thread.spawn_scoped(scope, move || shared.thread(number));
+                thread.expect("the system starts a thread")
+            };
+            let threads: Vec<_> = (0..self.threads).map(spawn).collect();
             let mut next = first();
             while let Some(tasks) = next {
                 queue.deal(tasks.into_iter().inspect(|_| shared.dealt()));
-                shared.barrier.wait();
+                shared.gate.open(self.threads);
                 next = first();
-                shared.barrier.wait();
+                shared.gate.wait();
                 if shared.given_up.load(Ordering::Relaxed) {
                     break;
                 }
                 finish();
             }
-            shared.over.store(true, Ordering::Relaxed);
-            shared.barrier.wait();
+            drop(end);
             let joined = threads.into_iter().map(|thread| thread.join());
             let spent = joined.map(|spent| spent.unwrap_or_else(|panic| resume_unwind(panic)));
             let spent = spent.collect();
@@ -196,28 +196,27 @@ impl<Q, W> Shared<'_, Q, W> {
         self.panic.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A thread's loop (listing 2). A task that panics must not leave the others at the
-    /// barrier: the thread goes there as well, and the application panics in its place.
+    /// A thread's loop (listing 2). A task that panics must not leave the others waiting: the thread
+    /// goes on as after its last task, and the application panics in its place.
     fn thread<T: Send>(&self, number: usize) -> Spent
     where
         Q: Queue<T>,
         W: for<'w> Fn(&mut Hands<'_, Q::Worker<'w>>, T) + Sync,
     {
         let mut spent = Spent::default();
-        loop {
-            self.barrier.wait();
-            if self.over.load(Ordering::Relaxed) {
-                return spent;
-            }
-            let frame = AssertUnwindSafe(|| self.frame(number, &mut spent));
-            let last = catch_unwind(frame).unwrap_or_else(|panic| {
+        let mut frame = 0;
+        while let Some(next) = self.gate.enter(frame) {
+            frame = next;
+            let work = AssertUnwindSafe(|| self.frame(number, &mut spent));
+            let last = catch_unwind(work).unwrap_or_else(|panic| {
                 self.panicked().get_or_insert(panic);
                 self.given_up.store(true, Ordering::Relaxed);
                 None
             });
-            self.barrier.wait();
+            self.gate.leave(frame);
             spent.idle += last.map_or(Duration::ZERO, |last| last.elapsed());
         }
+        spent
     }
 
     /// A thread's part of a frame; when it was done with it, if the clock is looked at.

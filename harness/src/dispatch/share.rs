@@ -29,15 +29,21 @@ thread_local! {
 
 /// Has all jobs that this thread asks for meanwhile done by so many threads.
 pub fn with_threads<R>(threads: usize, work: impl FnOnce() -> R) -> R {
-    let before = OWN.replace(threads);
-    let result = work();
-    OWN.set(before);
-    result
+    /// Also if the work panics.
+    struct Before(usize);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            OWN.set(self.0);
+        }
+    }
+    let _before = Before(OWN.replace(threads));
+    work()
 }
 
 /// Threads of a job.
 pub fn threads() -> usize {
-    match OWN.get().max(THREADS.load(Ordering::Relaxed)) {
+    let own = Some(OWN.get()).filter(|own| *own > 0);
+    match own.unwrap_or_else(|| THREADS.load(Ordering::Relaxed)) {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         threads => threads,
     }
@@ -81,8 +87,8 @@ pub fn map<T: Sync, R: Send>(items: &[T], size: usize, of: impl Fn(&T) -> R + Sy
     })
 }
 
-/// Whether something holds for each of so many items, in runs of `size`; no more is looked at than
-/// needed.
+/// Whether something holds for each of so many items, in runs of `size`; after one of which it does
+/// not, the rest are not looked at.
 ///
 /// # Panics
 /// With what one panics with.

@@ -6,8 +6,6 @@ mod gpu;
 mod pictures;
 mod setup;
 mod spec;
-#[cfg(test)]
-mod tests;
 
 use std::time::Instant;
 

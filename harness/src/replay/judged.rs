@@ -80,6 +80,12 @@ impl Judged {
 
     /// A row for each.
     pub(super) fn rows(self, spec: &str, device: &str, rows: &mut Rows) {
+        self.rows_or(None, spec, device, rows);
+    }
+
+    /// The same, of stages that a scene may leave nothing to do: they were run, and made nothing, as they
+    /// must. Their rows are skipped for this reason.
+    pub(super) fn rows_or(self, idle: Option<&str>, spec: &str, device: &str, rows: &mut Rows) {
         for kind in self.kinds {
             // Frames of which there is the same to say have it said once.
             let mut notes: Vec<String> = kind.frames.iter().map(|j| j.note.clone()).collect();
@@ -91,7 +97,10 @@ impl Judged {
                 true => notes.join("; "),
                 false => String::new(),
             };
-            let judgement = Judgement { note, ..judgement };
+            let mut judgement = Judgement { note, ..judgement };
+            if judgement.compared == 0 && judgement.differ() == 0 {
+                judgement.skipped = judgement.skipped.or_else(|| idle.map(str::to_owned));
+            }
             let mut a = Observed::<Spec, _>::new(spec, ());
             let mut b = Observed::<Gpu, _>::new(device, ());
             if let Some([spec, device]) = kind.times {

@@ -106,7 +106,7 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     match rays > RAYS_MAX {
         false => Ok(()),
         true => Err(parsed.mistake(
-            "dispatch.depth",
+            "size",
             format!(
                 "pixels, lamps and mirrors may ask for {rays} rays, and {RAYS_MAX} are the limit; use \
                  a smaller size, fewer lamps or less depth"

@@ -1,7 +1,7 @@
 //! Point lights.
 
 use super::DispatchError;
-use super::world::within;
+use super::world::{light, within};
 use crate::grid::lattice::{Point, REACH};
 use crate::rsm::sound;
 
@@ -41,7 +41,7 @@ impl Lamp {
         if !position.iter().all(|c| (-REACH..=REACH).contains(c)) {
             return Err(DispatchError::TooFar("a lamp"));
         }
-        sound(strength).map_err(|_| DispatchError::Light(strength[0]))?;
+        sound(strength).map_err(light)?;
         within("the reference distance", reference.into(), 1, LENGTH_MAX)?;
         within("the least distance", least.into(), 1, LENGTH_MAX)?;
         let lamp = Self {

@@ -105,7 +105,7 @@ fn mirror(parts: [f32; 3]) -> Result<Weight, DispatchError> {
 
 /// The models' errors that are not about colours have been looked at before, where a lattice
 /// was laid around the triangles.
-fn light(error: crate::rsm::RsmError) -> DispatchError {
+pub(super) fn light(error: crate::rsm::RsmError) -> DispatchError {
     match error {
         crate::rsm::RsmError::Light(value) => DispatchError::Light(value),
         crate::rsm::RsmError::Outside(_) => DispatchError::TooFar("a corner"),

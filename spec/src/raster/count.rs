@@ -10,7 +10,7 @@ pub(super) fn reaches(primitives: &Primitives, prim: u32) -> bool {
     rows.iter().any(|y| *y >= 0) && rows.iter().any(|y| *y < end)
 }
 
-/// How many fragments [`cover`] emits, without evaluating them.
+/// How many fragments [`cover`](super::cover) emits, without evaluating them.
 pub fn count(primitives: &Primitives) -> u64 {
     let (size, bits) = (primitives.size, primitives.bits);
     let fragments = |prim| {

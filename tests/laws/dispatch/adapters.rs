@@ -111,6 +111,7 @@ fn overflowed(appended: &Appended, room: u32) -> Verdict {
         capacity,
         attempts,
         rays,
+        ..
     } in &appended.overflows
     {
         prop_assert_eq!((*attempts as usize, *capacity), (all, room));

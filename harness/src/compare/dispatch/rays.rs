@@ -59,9 +59,9 @@ fn matched(must: &[Ray], seen: &[Ray]) -> Matched {
     }
 }
 
-/// Stages `primary`, `light` and `reflect`: which rays are in a queue. Of a pixel's rays that are not
-/// the spec's, as many as the spec has others there are wrong; what else is missing was lost, and what else is there
-/// is too much.
+/// Stages `primary`, `light` and `reflect`: which rays are in a queue. A ray that must not be there is
+/// paired with one of its pixel that is missing, and is wrong; what is missing beside these was lost, and what is
+/// there beside them is too much.
 pub fn shot(must: &[Ray], seen: &[Ray]) -> Judgement {
     let mut judgement = Judgement {
         compared: must.len() as u64,
@@ -78,7 +78,8 @@ pub fn shot(must: &[Ray], seen: &[Ray]) -> Judgement {
             (Some(x), Some(y)) if whose(x) == whose(y) => {
                 let words = format!("{y:?}, must be {x:?}");
                 let pixel = x.pixel;
-                (a.next(), b.next());
+                a.next();
+                b.next();
                 (Cause::Interval, pixel, words)
             }
             (Some(x), y) if y.is_none_or(|y| whose(x) < whose(y)) => {

@@ -84,6 +84,30 @@ fn a_task_that_panics_ends_the_crew() {
     }
 }
 
+/// Nor does what the application does between frames leave threads waiting.
+#[test]
+fn an_application_that_panics_ends_the_crew() {
+    for (in_first, in_finish) in [(2, 9), (9, 2)] {
+        let (mut begun, mut ended) = (0, 0);
+        let run = AssertUnwindSafe(|| {
+            Crew::new(3).frames(
+                &Lfree::new(),
+                || {
+                    begun += 1;
+                    assert!(begun != in_first, "the tasks of frame {begun}");
+                    (begun < 5).then_some(0..10)
+                },
+                |_, _: u32| (),
+                || {
+                    ended += 1;
+                    assert!(ended != in_finish, "the end of frame {ended}");
+                },
+            )
+        });
+        assert!(catch_unwind(run).is_err(), "the panic comes through");
+    }
+}
+
 /// One long task and nothing else: whoever counts stays, and is idle.
 #[test]
 fn idle_time_is_that_of_waiting() {

@@ -81,7 +81,7 @@ pub fn world(seed: u64, count: usize, size: Size) -> (World, Grid) {
     let eye = Eye::new(&camera, &lattice, size).expect("an eye");
     let material = |number: usize| Material {
         diffuse: [0.8, 0.5, 0.3],
-        mirror: if number % 2 == 0 {
+        mirror: if number.is_multiple_of(2) {
             [0.0; 3]
         } else {
             [0.9, 0.6, 0.3]

@@ -1,6 +1,7 @@
 //! A GPU leg of a scene with rays in queues: every stage from the spec's rays, bounce after bounce, then
 //! a frame of the device's own.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use triptych_gpu::dispatch::{Appended, Bounce as Made, Frame, Room, Stages};
@@ -16,6 +17,9 @@ use crate::replay::rows::Rows;
 
 /// One GPU leg of one scene.
 pub type DispatchLeg<'a> = Leg<'a, DispatchRun>;
+
+/// Why a stage has nothing to be compared.
+const NONE: &str = "the spec has no such ray, and neither has the leg";
 
 /// Fewest rays for which too little room is tried as well.
 const OVERFLOWING: usize = 4;
@@ -55,7 +59,7 @@ impl DispatchLeg<'_> {
             self.appended(bounce, next, &mut stages, &mut judged)?;
             self.deposited(bounce, &mut stages, &mut judged)?;
         }
-        judged.rows(&self.spec.label, &self.label(), rows);
+        judged.rows_or(Some(NONE), &self.spec.label, &self.label(), rows);
         self.left_out(rows);
         Ok(())
     }
@@ -107,7 +111,7 @@ impl DispatchLeg<'_> {
             let room = half(&bounce.shadows);
             let seen = stages.light(&bounce.rays, &bounce.surfaces, room)?;
             let time = stages.time;
-            let judgement = self.queue(&bounce.shadows, &seen, judged);
+            let judgement = self.queue(&bounce.rays, &bounce.shadows, &seen, judged);
             judged.add("light", judgement, self.share(times.light), time);
             let lights = self.beside(&bounce.lights, &seen.rays, |lights, seen| {
                 judge::lights(&bounce.shadows, lights, seen)
@@ -118,17 +122,21 @@ impl DispatchLeg<'_> {
             let must = next.map_or(&[][..], |next| &next.rays[..]);
             let seen = stages.reflect(&bounce.rays, &bounce.surfaces, half(must))?;
             let time = stages.time;
-            let judgement = self.queue(must, &seen, judged);
+            let judgement = self.queue(&bounce.rays, must, &seen, judged);
             judged.add("reflect", judgement, self.share(times.reflect), time);
         }
         Ok(())
     }
 
     /// A queue's rays; attempts that had too little room have a row of their own.
-    fn queue(&self, must: &[Ray], seen: &Appended, judged: &mut Judged) -> Judgement {
+    fn queue(&self, rays: &[Ray], must: &[Ray], seen: &Appended, judged: &mut Judged) -> Judgement {
         for tried in &seen.overflows {
             let room = [tried.capacity, tried.attempts];
-            let judgement = self.beside(must, &tried.rays, |must, seen| {
+            // Of a bounce that goes through in parts each has its own attempt; a pixel has one ray in it.
+            let asked = asked_by(rays, &tried.asked);
+            let own = must.iter().filter(|ray| asked.contains(&ray.pixel));
+            let own: Vec<Ray> = own.copied().collect();
+            let judgement = self.beside(own, &tried.rays, |must, seen| {
                 judge::overflow(must, room, seen)
             });
             judged.part("overflow", judgement);
@@ -161,7 +169,7 @@ impl DispatchLeg<'_> {
     }
 
     /// Adds a row for all stages, each from what the device made in the ones before: the same rays in
-    /// every bounce, the same answers, and a picture within its bounds.
+    /// every bounce, which needs the same answers to those before, and a picture within its bounds.
     ///
     /// # Errors
     /// Whatever the device reports.
@@ -197,6 +205,12 @@ impl Bounce {
         let met = self.met.iter().copied().chain(self.lit.iter().map(reached));
         (rays, met.collect())
     }
+}
+
+/// The pixels of some rays.
+fn asked_by(rays: &[Ray], rows: &std::ops::Range<usize>) -> BTreeSet<u32> {
+    let rays = rays.get(rows.clone()).unwrap_or_default();
+    rays.iter().map(|ray| ray.pixel).collect()
 }
 
 /// Half of the room that some rays need; as much as is chosen for few.

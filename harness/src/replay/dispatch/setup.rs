@@ -14,6 +14,9 @@ use crate::scene::{Loaded, Mistake};
 /// A reference distance, in steps, that the spec takes.
 const REFERENCE: f64 = 16_777_216.0;
 
+/// A shorter one is taken longer, so that rounding it to steps changes light by 2^-19 at most.
+const SHORT: f64 = 1_048_576.0;
+
 /// What rays are traced in.
 pub struct Setup {
     /// World space and the lattice: around everything, around lamps and a perspective eye.
@@ -90,24 +93,40 @@ fn blockers(loaded: &Loaded, lattice: &Lattice) -> Blockers {
     }
 }
 
-/// A lamp on the lattice. One that is so strong at a distance is four times as strong at half of it; so
-/// any reference distance will do, also those that are longer than the lattice.
+/// A lamp on the lattice. One that is so strong at a distance is four times as strong at half of it, and a
+/// quarter at twice: so any reference distance will do, also those that are longer than the lattice, or so short that
+/// whole steps would be another.
 fn lamp(entry: &LampEntry, lattice: &Lattice) -> Result<Lamp, Mistake> {
     let steps = |length: f64| libm::scalbn(length, -lattice.exponent);
+    let wrong = |message: String| Mistake::of("dispatch.lamp", message);
     let (mut strength, mut reference) = (entry.strength.0, steps(entry.reference.0));
-    // Where it is too strong for a number, the spec refuses it.
-    while reference > REFERENCE && strength.iter().all(|c| c.is_finite()) {
+    if !(reference > 0.0 && reference.is_finite()) {
+        let length = entry.reference.0;
+        return Err(wrong(format!(
+            "a reference distance of {length:e} is none in this scene"
+        )));
+    }
+    while reference > REFERENCE {
         reference /= 2.0;
         strength = strength.map(|c| 4.0 * c);
+    }
+    while reference < SHORT {
+        reference *= 2.0;
+        strength = strength.map(|c| c / 4.0);
     }
     #[expect(clippy::cast_possible_truncation, reason = "rounding is meant")]
     let strength = strength.map(|c| c as f32);
     let whole = |steps: f64| u32::try_from(nearest(steps)).unwrap_or(u32::MAX);
-    let least = whole(steps(entry.least())).clamp(1, whole(REFERENCE));
+    let least = steps(entry.least());
+    if least > REFERENCE {
+        let length = entry.least();
+        return Err(wrong(format!(
+            "a least distance of {length:e} is longer than the scene"
+        )));
+    }
     let place = lattice.snap(entry.position.0);
-    let place =
-        place.ok_or_else(|| Mistake::of("dispatch.lamp", "a lamp is not on the lattice"))?;
-    Lamp::new(place, strength, whole(reference).max(1), least).map_err(|e| told(&e))
+    let place = place.ok_or_else(|| wrong("a lamp is not on the lattice".to_owned()))?;
+    Lamp::new(place, strength, whole(reference), whole(least).max(1)).map_err(|e| told(&e))
 }
 
 /// What a scene's author can do about a lamp that the spec refuses.
