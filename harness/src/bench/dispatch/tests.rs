@@ -86,8 +86,45 @@ fn claims_are_judged_by_rows() {
     let alike = holds(&measured);
     assert_eq!(alike[0], Some(false), "LOCAL is no better");
     assert_eq!(alike[6], Some(false), "nor worse where work is uneven");
+    for row in &mut measured.rows {
+        row.spent = row.spent.map(|spent| Spent {
+            access: 1.0,
+            ..spent
+        });
+    }
+    let slow = holds(&measured);
+    assert_eq!(slow[1], Some(false), "LOCAL's access is not negligible");
+    measured.rows.retain(|row| row.threads == 4);
+    assert_eq!(holds(&measured)[4], None, "one number of threads");
     measured.rows.clear();
     assert_eq!(holds(&measured), [None; 7], "nothing is told of nothing");
+}
+
+/// What the paper says of 24 cores is judged where there are as many, by the rows of 24 threads.
+#[test]
+fn claims_of_many_cores_need_them() {
+    let mut measured = example();
+    for row in &mut measured.rows {
+        row.threads *= 6;
+    }
+    let judged = |measured: &Measured| {
+        let claims = claims(measured);
+        [3, 5].map(|at| claims[at].holds)
+    };
+    measured.machine.cores = 16;
+    assert_eq!(judged(&measured), [None; 2]);
+    measured.machine.cores = 24;
+    assert_eq!(judged(&measured), [Some(false), Some(true)]);
+    for row in measured
+        .rows
+        .iter_mut()
+        .filter(|r| r.method == Method::Lfree)
+    {
+        row.fps = Spread::of([100.0]);
+    }
+    assert_eq!(judged(&measured), [Some(true), Some(true)]);
+    measured.machine.cores = 12;
+    assert_eq!(judged(&measured), [None; 2]);
 }
 
 #[test]
