@@ -140,6 +140,11 @@ fn what_cannot_be_traced_is_refused() {
             ":17: 1.9 is outside 0 to 1",
         ),
         (
+            "size = [16, 16]",
+            "size = [1400, 1400]",
+            ":3: size: pixels, lamps and mirrors may ask for 23520000 rays, and 8388608 are the limit",
+        ),
+        (
             "strength = [1",
             "strength = [9e5",
             ":26: dispatch.lamp: its light may reach 2.304e8",

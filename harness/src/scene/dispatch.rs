@@ -13,8 +13,8 @@ use super::value::{Colour, Point, Shares, at_most};
 use crate::error::InputError;
 
 /// Most rays that a scene could ask for, if every ray met a surface that all lamps light and that
-/// mirrors: the spec traces a hundred thousand to a million of them in a second.
-pub const RAYS_MAX: u64 = 1 << 26;
+/// mirrors: a replay holds them all, with what they meet, on every leg.
+pub const RAYS_MAX: u64 = 1 << 23;
 
 /// What lights the scene, and how many mirrors a ray may see. Lengths are in world units.
 #[derive(Clone, Debug, Deserialize)]
