@@ -17,7 +17,7 @@ use bytemuck::{Pod, Zeroable};
 use triptych_spec::dispatch::{Eye, Met, Ray, Sums, World};
 use triptych_spec::rsm::Surface as SpecSurface;
 
-pub use records::{Carried, Facet, Lamp, Surface};
+pub use records::{Carried, Facet, Lamp};
 pub use stages::Stages;
 pub use timed::{Span, Timed};
 

@@ -131,3 +131,13 @@ pub(crate) struct Counted<'b> {
 pub(crate) fn exact(point: Point) -> [f32; 3] {
     point.map(|c| c as f32)
 }
+
+/// Back from there: what is no integer of at most 24 bits comes out as `i32::MIN`.
+pub(crate) fn integers(point: [f32; 3]) -> Point {
+    point.map(|c| {
+        let whole = c.fract() == 0.0 && c.abs() <= 16_777_216.0;
+        #[expect(clippy::cast_possible_truncation, reason = "an integer of 24 bits")]
+        let integer = if whole { c as i32 } else { i32::MIN };
+        integer
+    })
+}

@@ -3,6 +3,7 @@
 mod abuffer;
 mod blending;
 pub mod dispatch;
+mod effect;
 pub mod expect;
 pub mod file;
 mod fit;

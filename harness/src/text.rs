@@ -2,6 +2,15 @@
 
 use std::borrow::Cow;
 
+/// Comma-separated values: a line that names the columns, and one for each row.
+pub fn csv<const N: usize>(columns: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let mut text = columns.join(",") + "\n";
+    for row in rows {
+        text += &(row.join(",") + "\n");
+    }
+    text
+}
+
 /// A count with thousands separators: `1,234,567`.
 pub fn count(n: u64) -> String {
     let digits = n.to_string();

@@ -7,13 +7,14 @@ use triptych_spec::scene::Size;
 
 use super::Task;
 use super::queue::{BYTES, Queue};
-use super::records::{Surface, lamps, triangles};
+use super::records::{lamps, triangles};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::frame::WORKGROUP;
 use crate::kernel::Kernels;
 use crate::raster::MEMORY;
 use crate::ready::Ready;
+use crate::rsm::Surface;
 
 /// Words of a pixel's sums.
 const WORDS: usize = 6;

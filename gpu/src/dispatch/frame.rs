@@ -6,10 +6,11 @@ use triptych_spec::dispatch::Met;
 use triptych_spec::grid::trace::Query;
 
 use super::queue::Queue;
-use super::records::{Surface, met};
+use super::records::met;
 use super::stages::Stages;
 use super::{Batch, Bounce, Frame, Needs, Room};
 use crate::error::GpuError;
+use crate::rsm::Surface;
 
 impl Stages<'_> {
     /// All stages, each from what the ones before have left on the device: the host reads it,

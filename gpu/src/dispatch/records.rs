@@ -3,12 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::dispatch::{self as spec, LAMPS_MAX, Met, Ray, World};
-use triptych_spec::grid::lattice::Point;
 use triptych_spec::grid::ray::Ray as Way;
-use triptych_spec::rsm;
 
 use super::{DEPTH_AT, LIGHT};
-use crate::grid::{Hit, Packed, TRACED, exact};
+use crate::grid::{Hit, Packed, TRACED, exact, integers};
 
 /// A triangle, its plane and its material. Twin: `Facet` in `task.wgsl`.
 #[repr(C)]
@@ -127,8 +125,8 @@ pub(super) fn unpacked(way: &Packed, carried: &Carried) -> Ray {
     let Carried { parts, whose } = *carried;
     Ray {
         way: Way {
-            origin: point(way.origin),
-            direction: point(way.direction),
+            origin: integers(way.origin),
+            direction: integers(way.direction),
             segment: way.segment != 0,
         },
         pixel: whose & ((1 << DEPTH_AT) - 1),
@@ -138,15 +136,6 @@ pub(super) fn unpacked(way: &Packed, carried: &Carried) -> Ray {
             _ => spec::Carried::Light(parts.map(f32::from_bits)),
         },
     }
-}
-
-fn point(p: [f32; 3]) -> Point {
-    p.map(|c| {
-        let whole = c.fract() == 0.0 && c.abs() <= 16_777_216.0;
-        #[expect(clippy::cast_possible_truncation, reason = "an integer of 24 bits")]
-        let integer = if whole { c as i32 } else { i32::MIN };
-        integer
-    })
 }
 
 /// A search that found what a ray met.
@@ -170,37 +159,5 @@ pub(super) fn met(ray: &Ray, prim: u32) -> Met {
         (NOTHING, _) => Met::Nothing,
         (triangle, spec::Carried::Weight(_)) => Met::Triangle(triangle),
         (_, spec::Carried::Light(_)) => Met::Something,
-    }
-}
-
-/// A point that is seen. Twin: `Surface` in `task.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Surface {
-    /// In lattice steps, integers.
-    pub point: [f32; 3],
-    /// Twice the triangle, and 1 if its normal points away from where the ray came from; or
-    /// [`NOTHING`].
-    pub face: u32,
-}
-
-impl Surface {
-    pub(super) fn packed(surface: Option<&rsm::Surface>) -> Self {
-        let nothing = Self {
-            point: [0.0; 3],
-            face: NOTHING,
-        };
-        surface.map_or(nothing, |surface| Self {
-            point: exact(surface.point),
-            face: 2 * surface.triangle + u32::from(surface.side < 0),
-        })
-    }
-
-    pub(super) fn unpacked(self) -> Option<rsm::Surface> {
-        (self.face != NOTHING).then(|| rsm::Surface {
-            triangle: self.face / 2,
-            side: if self.face & 1 == 1 { -1 } else { 1 },
-            point: point(self.point),
-        })
     }
 }

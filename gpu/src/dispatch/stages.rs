@@ -10,12 +10,13 @@ use triptych_spec::rsm::Surface as SpecSurface;
 
 use super::device::Device;
 use super::queue::Queue;
-use super::records::{Surface, met};
+use super::records::met;
 use super::{Appended, Hits, Overflow, Surfaces};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::grid;
 use crate::kernel::Kernels;
+use crate::rsm::Surface;
 
 /// Stages of the ray tracer. What is read back is what the device says: triangles may be none of
 /// the world.

@@ -228,16 +228,10 @@ impl<'g> Stages<'g> {
             any: (query == Query::Any).into(),
             ..self.device.cells
         };
-        let mut time = Duration::ZERO;
-        self.dispatches = 0;
-        for _ in 0..self.device.rounds(self.prims.size() / 4) {
-            self.dispatches += 1;
-            time += self.device.each("trace", cells, &buffers)?;
-            if self.device.take_unfinished()? == 0 {
-                return Ok(time);
-            }
-        }
-        Err(self.endless())
+        let search = || self.device.each("trace", cells, &buffers);
+        let (time, dispatches) = self.until_done(search)?;
+        self.dispatches = dispatches;
+        Ok(time)
     }
 
     /// The same for the rays of a queue, however many those are.
@@ -255,14 +249,26 @@ impl<'g> Stages<'g> {
             any: (query == Query::Any).into(),
             ..self.device.cells
         };
-        let mut time = Duration::ZERO;
-        self.dispatches = 0;
-        for _ in 0..self.device.rounds(self.prims.size() / 4) {
-            self.dispatches += 1;
+        let search = || {
             let pass = self.device.ready_counted(cells, queue, &buffers)?;
-            time += pass.run(self.device.gpu)?;
+            pass.run(self.device.gpu)
+        };
+        let (time, dispatches) = self.until_done(search)?;
+        self.dispatches = dispatches;
+        Ok(time)
+    }
+
+    /// Dispatches until no ray is unfinished: how long that took, and how often.
+    fn until_done(
+        &self,
+        search: impl Fn() -> Result<Duration, GpuError>,
+    ) -> Result<(Duration, u32), GpuError> {
+        let mut time = Duration::ZERO;
+        let rounds = 0..self.device.rounds(self.prims.size() / 4);
+        for (round, _) in (1..).zip(rounds) {
+            time += search()?;
             if self.device.take_unfinished()? == 0 {
-                return Ok(time);
+                return Ok((time, round));
             }
         }
         Err(self.endless())

@@ -5,6 +5,8 @@ use triptych_spec::abuffer::NOTHING;
 use triptych_spec::grid::lattice::Point;
 use triptych_spec::rsm::{self as spec, Model};
 
+use crate::grid::{exact, integers};
+
 /// The plane and colour of a triangle. Twin: `Face` in `surface.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -47,27 +49,27 @@ pub(super) fn faces(model: &Model) -> Vec<Face> {
     }
 }
 
-/// A point that is seen. Twin: `Surface` in `surface.wgsl`.
+/// A point that is seen. Twins: `Surface` in `surface.wgsl` and in `task.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Surface {
     /// In lattice steps, integers.
     pub point: [f32; 3],
-    /// Twice the triangle, and 1 if its normal points away from the viewer; or [`NOTHING`].
+    /// Twice the triangle, and 1 if its normal points away from where it is seen from; or
+    /// [`NOTHING`].
     pub face: u32,
 }
 
 impl Surface {
     /// As kernels read it.
-    pub(super) fn packed(surface: Option<&spec::Surface>) -> Self {
+    pub(crate) fn packed(surface: Option<&spec::Surface>) -> Self {
         surface.map_or(
             Self {
                 point: [0.0; 3],
                 face: NOTHING,
             },
             |surface| Self {
-                // Lattice points have 24 bits.
-                point: surface.point.map(|c| c as f32),
+                point: exact(surface.point),
                 face: 2 * surface.triangle + u32::from(surface.side < 0),
             },
         )
@@ -75,21 +77,13 @@ impl Surface {
 
     /// As the spec has it; what is no integer of the lattice comes out as `i32::MIN`. The
     /// triangle is whatever the device says.
-    pub(super) fn unpacked(self) -> Option<spec::Surface> {
+    pub(crate) fn unpacked(self) -> Option<spec::Surface> {
         (self.face != NOTHING).then(|| spec::Surface {
             triangle: self.face / 2,
             side: if self.face & 1 == 1 { -1 } else { 1 },
-            point: self.point.map(integer),
+            point: integers(self.point),
         })
     }
-}
-
-/// An integer of at most 24 bits, or `i32::MIN`.
-fn integer(c: f32) -> i32 {
-    let whole = c.fract() == 0.0 && c.abs() <= 16_777_216.0;
-    #[expect(clippy::cast_possible_truncation, reason = "an integer of 24 bits")]
-    let integer = if whole { c as i32 } else { i32::MIN };
-    integer
 }
 
 /// Where a point lies in the light's map. Twin: `Place` in `texel.wgsl`.
@@ -151,7 +145,7 @@ impl Light {
         }
     }
 
-    pub(super) fn unpacked(self) -> Option<spec::Surface> {
+    pub(crate) fn unpacked(self) -> Option<spec::Surface> {
         let Self { point, face, .. } = self;
         Surface { point, face }.unpacked()
     }

@@ -2,7 +2,7 @@
 
 use super::rows::{BLENDS, ORDERS};
 use super::{Bench, Row, Spread};
-use crate::text::quoted;
+use crate::text::{self, quoted};
 
 /// The columns. Times are in milliseconds, rates per second, memory in bytes, PSNR in
 /// decibels or `exact`; `ratio` is over the same leg's time of all layers by sorting; `time` is from
@@ -51,13 +51,7 @@ pub const COLUMNS: [&str; 36] = [
 
 /// The whole file, with a header.
 pub fn csv(bench: &Bench) -> String {
-    let mut text = COLUMNS.join(",");
-    text.push('\n');
-    for row in &bench.rows {
-        text.push_str(&values(row).join(","));
-        text.push('\n');
-    }
-    text
+    text::csv(COLUMNS, bench.rows.iter().map(values))
 }
 
 fn values(row: &Row) -> [String; COLUMNS.len()] {

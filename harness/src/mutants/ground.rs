@@ -186,43 +186,19 @@ impl Ground {
             return leg.each(&mut rows).map(|()| rows.rows);
         }
         if let Some((spec, plan)) = &self.rsm {
-            let leg = RsmLeg {
-                adapter,
-                path,
-                spec,
-                passes: &plan.passes,
-            };
+            let leg = RsmLeg::new(adapter, path, spec, &plan.passes);
             return leg.each(&mut rows).map(|()| rows.rows);
         }
         if let Some((spec, plan)) = &self.ldm {
-            let leg = LdmLeg {
-                adapter,
-                path,
-                spec,
-                passes: &plan.passes,
-            };
-            leg.each(&mut rows)?;
-            // Points that a device sees by itself have no stage of this family. What a stage
-            // shows would show again.
-            if rows.rows.iter().all(|row| row.differ == 0) {
-                leg.end_to_end(&mut rows)?;
-            }
-            return Ok(rows.rows);
+            let leg = LdmLeg::new(adapter, path, spec, &plan.passes);
+            // Points that a device sees by itself have no stage of this family.
+            return stages_or_whole(&leg, rows, LdmLeg::each, LdmLeg::end_to_end);
         }
         if let Some((spec, plan)) = &self.dispatch {
-            let leg = DispatchLeg {
-                adapter,
-                path,
-                spec,
-                passes: &plan.passes,
-            };
-            leg.each(&mut rows)?;
+            let leg = DispatchLeg::new(adapter, path, spec, &plan.passes);
             // What searches answer in their exact form is told by the stage; what queues are without the
             // host's reading them, only by the whole.
-            if rows.rows.iter().all(|row| row.differ == 0) {
-                leg.end_to_end(&mut rows)?;
-            }
-            return Ok(rows.rows);
+            return stages_or_whole(&leg, rows, DispatchLeg::each, DispatchLeg::end_to_end);
         }
         self.frame(adapter, setting, files, &mut rows)?;
         Ok(rows.rows)
@@ -285,6 +261,20 @@ impl Ground {
         let shares = layered.flat_map(|(pixel, _)| pixel.map(|c| c.bound / c.value));
         2.0 * shares.fold(0.0, f64::max)
     }
+}
+
+/// The rows of all stages, and those of the whole if no stage shows anything: it would show again.
+fn stages_or_whole<L, T>(
+    leg: &L,
+    mut rows: Rows,
+    each: impl Fn(&L, &mut Rows) -> Result<(), GpuError>,
+    whole: impl Fn(&L, &mut Rows) -> Result<T, GpuError>,
+) -> Result<Vec<Row>, GpuError> {
+    each(leg, &mut rows)?;
+    if rows.rows.iter().all(|row| row.differ == 0) {
+        whole(leg, &mut rows)?;
+    }
+    Ok(rows.rows)
 }
 
 fn kernels(adapter: &mut Adapter, path: Path) -> &mut Kernels {

@@ -63,12 +63,7 @@ impl Run<'_> {
         }
         let plan = DispatchPlan::new(self.loaded, self.options.skip);
         let spec = self.dispatch_spec()?;
-        let leg = DispatchLeg {
-            adapter,
-            path,
-            spec: &spec,
-            passes: &plan.passes,
-        };
+        let leg = DispatchLeg::new(adapter, path, &spec, &plan.passes);
         match leg.run(&mut self.rows) {
             Ok(made) => {
                 if self.options.pictures {

@@ -64,12 +64,7 @@ impl Run<'_> {
         }
         let plan = LdmPlan::new(self.loaded, self.options.skip);
         let spec = self.ldm_spec()?;
-        let leg = LdmLeg {
-            adapter,
-            path,
-            spec: &spec,
-            passes: &plan.passes,
-        };
+        let leg = LdmLeg::new(adapter, path, &spec, &plan.passes);
         match leg.run(&mut self.rows) {
             Ok(made) => self
                 .dump_ldm_gpu(&label, &spec, &made)

@@ -21,7 +21,22 @@ pub struct Leg<'a, S> {
     pub passes: &'a [Pass],
 }
 
-impl<S> Leg<'_, S> {
+impl<'a, S> Leg<'a, S> {
+    /// The leg of an adapter on a path.
+    pub fn new(
+        adapter: &'a Adapter,
+        path: Path,
+        spec: &'a Observed<Spec, S>,
+        passes: &'a [Pass],
+    ) -> Self {
+        Self {
+            adapter,
+            path,
+            spec,
+            passes,
+        }
+    }
+
     /// The leg's name in rows.
     pub fn label(&self) -> String {
         self.adapter.label(self.path)

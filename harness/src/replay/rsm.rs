@@ -66,12 +66,7 @@ impl Run<'_> {
         }
         let plan = RsmPlan::new(self.loaded, self.options.skip);
         let spec = self.rsm_spec()?;
-        let leg = RsmLeg {
-            adapter,
-            path,
-            spec: &spec,
-            passes: &plan.passes,
-        };
+        let leg = RsmLeg::new(adapter, path, &spec, &plan.passes);
         let first = self.rows.spots.len();
         match leg.run(&mut self.rows) {
             Ok(made) => {

@@ -6,10 +6,10 @@ use serde::Deserialize;
 use toml::Spanned;
 use triptych_spec::dispatch::{DEPTH_MAX, LAMPS_MAX};
 
-use super::Parsed;
-use super::file::{Abuffer, MaterialEntry, MeshEntry, SampleCount, SceneFile};
+use super::file::{MaterialEntry, MeshEntry};
 use super::rsm::{Length, Whole};
 use super::value::{Colour, Point, Shares, at_most};
+use super::{Parsed, effect};
 use crate::error::InputError;
 
 /// Most rays that a scene could ask for, if every ray met a surface that all lamps light and that
@@ -82,21 +82,13 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
             Err(parsed.error(material.name.span(), message))
         });
     };
-    if let Some(key) = without_effect(file) {
-        let message =
-            format!("{key} has no effect on a scene with [dispatch]; leave one of them out");
-        return Err(parsed.error(dispatch.span(), message));
-    }
+    effect::check(parsed, "[dispatch]", dispatch.span())?;
     let only_elsewhere =
         |m: &MeshEntry| m.moves.is_some() || m.seen.is_some() || m.blocks.is_some();
     let strange = file.mesh.iter().find(|m| only_elsewhere(m.get_ref()));
     if let Some(mesh) = strange {
         let message = "`seen`, `blocks` and `moves` have no effect on a scene with [dispatch]";
         return Err(parsed.error(mesh.span(), message));
-    }
-    if parsed.keys.states("budget.vertex") {
-        let message = "has no effect on a scene with [dispatch]; leave it out";
-        return Err(parsed.mistake("budget.vertex", message));
     }
     let mirrors = |m: &MaterialEntry| m.mirror.is_some_and(|m| m != Shares::default());
     let mirrors = file.material.iter().any(mirrors);
@@ -113,20 +105,4 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
             ),
         )),
     }
-}
-
-/// A key that is stated, and that nothing of a scene with `[dispatch]` depends on.
-fn without_effect(file: &SceneFile) -> Option<&'static str> {
-    let keys = [
-        ("[rsm]", file.rsm.is_some()),
-        ("[ldm]", file.ldm.is_some()),
-        ("[grid]", file.grid.is_some()),
-        ("[[light]]", file.light != SceneFile::default_lights()),
-        ("samples", file.samples != SampleCount::default()),
-        ("[abuffer]", file.abuffer != Abuffer::default()),
-        ("[expect]", file.expect.stated() > 0),
-    ];
-    keys.into_iter()
-        .find(|(_, stated)| *stated)
-        .map(|(key, _)| key)
 }

@@ -8,10 +8,10 @@ use toml::Spanned;
 use triptych_spec::ldm::{DIRECTIONS_MAX, RESOLUTION_MAX, RESOLUTION_MIN};
 use triptych_spec::rsm::{OFFSET_MAX, OFFSET_MIN};
 
-use super::Parsed;
-use super::file::{Abuffer, MeshEntry, SampleCount, SceneFile};
+use super::file::{MeshEntry, SceneFile};
 use super::rsm::{Length, Whole};
 use super::sky::SkyEntry;
+use super::{Parsed, effect};
 use crate::error::InputError;
 
 /// Most pairs of a pixel of the picture and a map, over all rotations: the spec looks 20 to 40
@@ -113,10 +113,7 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     let Some(ldm) = &file.ldm else {
         return Ok(());
     };
-    if let Some(key) = without_effect(file) {
-        let message = format!("{key} has no effect on a scene with [ldm]; leave one of them out");
-        return Err(parsed.error(ldm.span(), message));
-    }
+    effect::check(parsed, "[ldm]", ldm.span())?;
     let of = |wrong: fn(&MeshEntry) -> bool| file.mesh.iter().find(|m| wrong(m.get_ref()));
     if let Some(mesh) = of(|m| m.moves.is_some()) {
         let message = "`moves` is for scenes with [rsm]";
@@ -125,10 +122,6 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     if let Some(mesh) = of(|m| m.seen == Some(false) && m.blocks == Some(false)) {
         let message = "a mesh that is not seen must block light, or it does nothing";
         return Err(parsed.error(mesh.span(), message));
-    }
-    if parsed.keys.states("budget.vertex") {
-        let message = "has no effect on a scene with [ldm]; leave it out";
-        return Err(parsed.mistake("budget.vertex", message));
     }
     let checked = ldm.get_ref().check(file.size.0.pixels() as u64);
     checked.map_err(|(key, message)| parsed.mistake(key, message))
@@ -142,20 +135,4 @@ pub(super) fn settle(file: &mut SceneFile) {
             mesh.get_mut().blocks.get_or_insert(true);
         }
     }
-}
-
-/// A key that is stated, and that nothing of a scene with `[ldm]` depends on.
-fn without_effect(file: &SceneFile) -> Option<&'static str> {
-    let keys = [
-        ("[rsm]", file.rsm.is_some()),
-        ("[dispatch]", file.dispatch.is_some()),
-        ("[grid]", file.grid.is_some()),
-        ("[[light]]", file.light != SceneFile::default_lights()),
-        ("samples", file.samples != SampleCount::default()),
-        ("[abuffer]", file.abuffer != Abuffer::default()),
-        ("[expect]", file.expect.stated() > 0),
-    ];
-    keys.into_iter()
-        .find(|(_, stated)| *stated)
-        .map(|(key, _)| key)
 }

@@ -7,11 +7,11 @@ use serde::Deserialize;
 use toml::Spanned;
 use triptych_spec::rsm::{BLUR_MAX, DIVISOR_MAX, OFFSET_MAX, OFFSET_MIN, RADIUS_MAX, STRIDE_MAX};
 
-use super::Parsed;
-use super::file::{Abuffer, CameraEntry, MeshEntry, SampleCount, SceneFile};
+use super::file::{CameraEntry, MeshEntry};
 use super::flatten::PLACEMENT_MAX;
 use super::source::Source;
 use super::value::{Colour, ImageSize, Point};
+use super::{Parsed, effect};
 use crate::error::InputError;
 
 /// Most frames of a scene.
@@ -197,10 +197,7 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
             Err(parsed.error(mesh.span(), message))
         });
     };
-    if let Some(key) = without_effect(file) {
-        let message = format!("{key} has no effect on a scene with [rsm]; leave one of them out");
-        return Err(parsed.error(rsm.span(), message));
-    }
+    effect::check(parsed, "[rsm]", rsm.span())?;
     let idle = |m: &&Spanned<MeshEntry>| !m.get_ref().is_seen() && !m.get_ref().does_block();
     if let Some(mesh) = file.mesh.iter().find(idle) {
         let message = "a mesh that is not seen must block light, or it does nothing";
@@ -208,10 +205,6 @@ pub(super) fn check(parsed: &Parsed) -> Result<(), InputError> {
     }
     let checked = rsm.get_ref().check(file.size.0.pixels() as u64);
     checked.map_err(|message| parsed.error(rsm.span(), message))?;
-    if parsed.keys.states("budget.vertex") {
-        let message = "has no effect on a scene with [rsm]; leave it out";
-        return Err(parsed.mistake("budget.vertex", message));
-    }
     check_moves(parsed, rsm.get_ref().frames.0)?;
     let lamp = &rsm.get_ref().lamp;
     let map = rsm.get_ref().map.0;
@@ -263,20 +256,4 @@ pub(super) fn check_meshes(parsed: &Parsed, meshes: &[Source]) -> Result<(), Inp
          the limit"
     );
     Err(parsed.mistake("rsm.frames", message))
-}
-
-/// A key that is stated, and that nothing of a scene with `[rsm]` depends on.
-fn without_effect(file: &SceneFile) -> Option<&'static str> {
-    let keys = [
-        ("[grid]", file.grid.is_some()),
-        ("[ldm]", file.ldm.is_some()),
-        ("[dispatch]", file.dispatch.is_some()),
-        ("[[light]]", file.light != SceneFile::default_lights()),
-        ("samples", file.samples != SampleCount::default()),
-        ("[abuffer]", file.abuffer != Abuffer::default()),
-        ("[expect]", file.expect.stated() > 0),
-    ];
-    keys.into_iter()
-        .find(|(_, stated)| *stated)
-        .map(|(key, _)| key)
 }

@@ -2,18 +2,14 @@
 //! spec's input gives its rays to the bit, and light within its bounds; so do whole frames.
 
 use proptest::prelude::*;
-use triptych_gpu::context::Gpu;
 use triptych_gpu::dispatch::{Appended, Frame, Overflow, Room, Stages, Timed};
-use triptych_gpu::grid::{Device, Shape};
-use triptych_gpu::kernel::Kernels;
 use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::bound::Bounded;
 use triptych_spec::dispatch::{Carried, Met, Ray, Sums, UNIT_BITS, deposit, primary};
-use triptych_spec::grid::Membership;
 use triptych_spec::rsm::Colour;
 
 use super::{Bounce, Scene, scenes};
-use crate::adapters::devices;
+use crate::adapters::{devices, shape};
 use crate::config;
 
 pub type Verdict = Result<(), TestCaseError>;
@@ -184,21 +180,6 @@ fn bound(scene: &Scene, bounce: &Bounce, bounds: &mut [[Bounded; 3]]) {
     }
 }
 
-/// What the triangles' cells need, by a checked run.
-pub fn shape(scene: &Scene, (gpu, kernels): (&Gpu, &Kernels)) -> Option<Shape> {
-    let (blockers, axes) = (&scene.world.blockers, &scene.grid.axes);
-    if blockers.triangles.is_empty() {
-        return None;
-    }
-    let device = Device::new(gpu, kernels, blockers, axes, Membership::Box).unwrap();
-    let mut stages = triptych_gpu::grid::Stages::new(device).unwrap();
-    stages.count().unwrap();
-    let offsets = stages.scan().unwrap();
-    let entries = *offsets.last().unwrap();
-    stages.fill(entries, entries).unwrap();
-    Some(Shape::of(&offsets, stages.chunks))
-}
-
 proptest! {
     #![proptest_config(config(48))]
 
@@ -229,7 +210,8 @@ proptest! {
                 let mut stages = Stages::new(gpu, kernels, &scene.world, &scene.grid).unwrap();
                 let frame = stages.frame(room).unwrap();
                 follows(&scene, &bounces, &frame)?;
-                let cells = shape(&scene, (gpu, kernels)).map(|shape| (&scene.grid.axes, shape));
+                let cells = shape(gpu, kernels, &scene.world.blockers, &scene.grid)
+.map(|shape| (&scene.grid.axes, shape));
                 let timed = Timed::new(gpu, kernels, &scene.world, cells, &frame.batches).unwrap();
                 let timer = Timer::new(gpu, &Clock::Host(String::new()), 1).unwrap();
                 // What a frame leaves does not change the next.

@@ -2,15 +2,11 @@
 //! spec's input decides as the spec does, and reports within its bounds.
 
 use proptest::prelude::*;
-use triptych_gpu::context::Gpu;
-use triptych_gpu::grid::{Device, Shape};
-use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
 use triptych_gpu::rsm::{Made, Stages, Timed, Work};
 use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::abuffer::NOTHING;
 use triptych_spec::bound::Bounded;
-use triptych_spec::grid::Membership;
 use triptych_spec::rsm::{
     Coarse, Colour, Frame, Gbuffer, Light, PLACE_MAX, Place, Surface, block, blur, compose, direct,
     gather, place, project,
@@ -21,7 +17,7 @@ use triptych_spec::vertex::{DEPTH_ONE, SUBPIXEL_BITS, primitives};
 use super::kernels::plain;
 use super::loose::given;
 use super::{Scene, scenes};
-use crate::adapters::devices;
+use crate::adapters::{devices, shape};
 use crate::config;
 
 type Verdict = Result<(), TestCaseError>;
@@ -217,21 +213,6 @@ fn follows(scene: &Scene, frame: &Frame, made: &Made) -> Verdict {
     admitted("compose", &expected, &made.picture)
 }
 
-/// What the blockers' cells need, by a checked run.
-fn shape(scene: &Scene, (gpu, kernels): (&Gpu, &Kernels)) -> Option<Shape> {
-    let (blockers, axes) = (&scene.blockers, &scene.grid.axes);
-    if blockers.triangles.is_empty() {
-        return None;
-    }
-    let device = Device::new(gpu, kernels, blockers, axes, Membership::Box).unwrap();
-    let mut stages = triptych_gpu::grid::Stages::new(device).unwrap();
-    stages.count().unwrap();
-    let offsets = stages.scan().unwrap();
-    let entries = *offsets.last().unwrap();
-    stages.fill(entries, entries).unwrap();
-    Some(Shape::of(&offsets, stages.chunks))
-}
-
 proptest! {
     #![proptest_config(config(48))]
 
@@ -257,7 +238,7 @@ proptest! {
                     setting: scene.setting(),
                     drawn: drawn.each_ref(),
                     path: Path::Compute,
-                    cells: shape(&scene, (gpu, kernels)),
+                    cells: shape(gpu, kernels, &scene.blockers, &scene.grid),
                 };
                 let timed = Timed::new(gpu, kernels, &work).unwrap();
                 let timer = Timer::new(gpu, &Clock::Host(String::new()), 1).unwrap();

@@ -1,7 +1,7 @@
 //! Rows as comma-separated values.
 
 use super::{Measured, Row};
-use crate::text::quoted;
+use crate::text::{self, quoted};
 
 /// The columns; what was not measured is empty.
 const COLUMNS: [&str; 17] = [
@@ -26,13 +26,8 @@ const COLUMNS: [&str; 17] = [
 
 /// The whole file, with a header.
 pub fn csv(measured: &Measured) -> String {
-    let mut text = COLUMNS.join(",");
-    text.push('\n');
-    for row in &measured.rows {
-        text.push_str(&values(measured, row).join(","));
-        text.push('\n');
-    }
-    text
+    let rows = measured.rows.iter();
+    text::csv(COLUMNS, rows.map(|row| values(measured, row)))
 }
 
 fn values(measured: &Measured, row: &Row) -> [String; COLUMNS.len()] {

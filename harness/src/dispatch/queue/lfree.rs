@@ -116,18 +116,11 @@ impl<T> Default for Lfree<T> {
 }
 
 impl<T, R: Reclaim<Node<T>>> Drop for Lfree<T, R> {
-    /// Node by node: a chain that dropped itself would need as much stack as it is long.
     #[expect(unsafe_code, reason = "nodes are shared by pointers")]
     fn drop(&mut self) {
-        let mut node = self.head.0.load(Ordering::Relaxed);
-        while !node.is_null() {
-            // SAFETY: no thread is left, each node is freed once, after its `next` was read.
-            unsafe {
-                let next = (*node).next.load(Ordering::Relaxed);
-                self.reclaim.free(node);
-                node = next;
-            }
-        }
+        let first = self.head.0.load(Ordering::Relaxed);
+        // SAFETY: no thread is left, and all nodes are the reclaimer's.
+        unsafe { Node::free_chain(first, |node| self.reclaim.free(node)) };
     }
 }
 

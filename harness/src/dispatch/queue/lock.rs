@@ -78,20 +78,13 @@ impl<T> Default for Lock<T> {
 }
 
 impl<T> Drop for Lock<T> {
-    /// Node by node: a chain that dropped itself would need as much stack as it is long.
     #[expect(unsafe_code, reason = "nodes are shared by pointers")]
     fn drop(&mut self) {
         // A thread that panicked elsewhere may have poisoned it; the chain is whole all the same.
         let head = self.head.0.lock();
-        let mut node = *head.unwrap_or_else(std::sync::PoisonError::into_inner);
-        while !node.is_null() {
-            // SAFETY: no thread is left, each node is freed once, after its `next` was read.
-            unsafe {
-                let next = (*node).next.load(Ordering::Relaxed);
-                free(node);
-                node = next;
-            }
-        }
+        let first = *head.unwrap_or_else(std::sync::PoisonError::into_inner);
+        // SAFETY: no thread is left, and all nodes are `create`'s.
+        unsafe { Node::free_chain(first, |node| free(node)) };
     }
 }
 

@@ -4,7 +4,7 @@
 //! So a queue is empty if its sentinel has no next node, and no node needs to be the first and
 //! the last at once.
 
-use super::sync::{AtomicPtr, UnsafeCell};
+use super::sync::{AtomicPtr, Ordering, UnsafeCell};
 
 /// One link of a chain.
 pub struct Node<T> {
@@ -41,5 +41,21 @@ impl<T> Node<T> {
         // SAFETY: nobody else has a pointer into the cell meanwhile, says the caller.
         let value = self.value.with_mut(|value| unsafe { (*value).take() });
         value.expect("a value is taken once, by who made its node the sentinel")
+    }
+
+    /// Frees a chain from its first node on; node by node, for one that dropped itself would need as
+    /// much stack as it is long.
+    ///
+    /// # Safety
+    ///
+    /// No other thread has a pointer to any node, and `free` may be asked to free each.
+    #[expect(unsafe_code, reason = "nodes are shared by pointers")]
+    pub(super) unsafe fn free_chain(mut first: *mut Self, free: impl Fn(*mut Self)) {
+        while !first.is_null() {
+            // SAFETY: it is not freed yet, and nobody changes it.
+            let next = unsafe { (*first).next.load(Ordering::Relaxed) };
+            free(first);
+            first = next;
+        }
     }
 }
