@@ -3,10 +3,8 @@
 use std::sync::OnceLock;
 
 use triptych_gpu::context::{Gpu, adapters};
-use triptych_gpu::grid::{Device, Shape, Stages};
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::wgsl::Sources;
-use triptych_spec::grid::{Blockers, Grid, Membership};
 
 /// Opened once, with kernels of both kinds.
 pub fn devices() -> &'static [(Gpu, Vec<Kernels>)] {
@@ -31,18 +29,4 @@ pub fn devices() -> &'static [(Gpu, Vec<Kernels>)] {
         );
         all
     })
-}
-
-/// What the cells of some blockers need, by a checked run; `None` where nothing is to be found.
-pub fn shape(gpu: &Gpu, kernels: &Kernels, blockers: &Blockers, grid: &Grid) -> Option<Shape> {
-    if blockers.triangles.is_empty() {
-        return None;
-    }
-    let device = Device::new(gpu, kernels, blockers, &grid.axes, Membership::Box).unwrap();
-    let mut stages = Stages::new(device).unwrap();
-    stages.count().unwrap();
-    let offsets = stages.scan().unwrap();
-    let entries = *offsets.last().unwrap();
-    stages.fill(entries, entries).unwrap();
-    Some(Shape::of(&offsets, stages.chunks))
 }

@@ -3,14 +3,14 @@
 //! Kernels run unchecked, as an engine has them, so only ours may, and only on what a checked
 //! run has been through: that run also tells how many dispatches each stage needs.
 
-use triptych_spec::grid::Blockers;
 use triptych_spec::grid::axis::Axis;
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::Query;
+use triptych_spec::grid::{Blockers, Membership};
 
 use super::room::Room;
-use super::stages::fresh;
-use super::{Hit, Packed};
+use super::stages::{Stages, fresh};
+use super::{Device, Hit, Packed};
 use crate::context::Gpu;
 use crate::error::GpuError;
 use crate::kernel::Kernels;
@@ -47,6 +47,28 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// Of a build that is run and checked for it, before any ray; `None` where nothing is to be found.
+    ///
+    /// # Errors
+    /// Limits by name, and whatever the device reports.
+    pub fn checked(
+        gpu: &Gpu,
+        kernels: &Kernels,
+        blockers: &Blockers,
+        axes: &[Axis; 3],
+    ) -> Result<Option<Self>, GpuError> {
+        if blockers.triangles.is_empty() {
+            return Ok(None);
+        }
+        let device = Device::new(gpu, kernels, blockers, axes, Membership::Box)?;
+        let mut stages = Stages::new(device)?;
+        stages.count()?;
+        let offsets = stages.scan()?;
+        let entries = offsets.last().copied().unwrap_or(0);
+        stages.fill(entries, entries)?;
+        Ok(Some(Self::of(&offsets, stages.chunks)))
+    }
+
     /// Of a checked build, before any ray.
     pub fn of(offsets: &[u32], chunks: u32) -> Self {
         let lengths = offsets.windows(2).map(|run| run[1] - run[0]);

@@ -3,13 +3,14 @@
 
 use proptest::prelude::*;
 use triptych_gpu::dispatch::{Appended, Frame, Overflow, Room, Stages, Timed};
+use triptych_gpu::grid::Shape;
 use triptych_gpu::timer::{Clock, Timer};
 use triptych_spec::bound::Bounded;
 use triptych_spec::dispatch::{Carried, Met, Ray, Sums, UNIT_BITS, deposit, primary};
 use triptych_spec::rsm::Colour;
 
 use super::{Bounce, Scene, scenes};
-use crate::adapters::{devices, shape};
+use crate::adapters::devices;
 use crate::config;
 
 pub type Verdict = Result<(), TestCaseError>;
@@ -210,8 +211,9 @@ proptest! {
                 let mut stages = Stages::new(gpu, kernels, &scene.world, &scene.grid).unwrap();
                 let frame = stages.frame(room).unwrap();
                 follows(&scene, &bounces, &frame)?;
-                let cells = shape(gpu, kernels, &scene.world.blockers, &scene.grid)
-.map(|shape| (&scene.grid.axes, shape));
+                let axes = &scene.grid.axes;
+let shape = Shape::checked(gpu, kernels, &scene.world.blockers, axes).unwrap();
+let cells = shape.map(|shape| (axes, shape));
                 let timed = Timed::new(gpu, kernels, &scene.world, cells, &frame.batches).unwrap();
                 let timer = Timer::new(gpu, &Clock::Host(String::new()), 1).unwrap();
                 // What a frame leaves does not change the next.

@@ -2,6 +2,7 @@
 //! spec's input decides as the spec does, and reports within its bounds.
 
 use proptest::prelude::*;
+use triptych_gpu::grid::Shape;
 use triptych_gpu::raster::Path;
 use triptych_gpu::rsm::{Made, Stages, Timed, Work};
 use triptych_gpu::timer::{Clock, Timer};
@@ -17,7 +18,7 @@ use triptych_spec::vertex::{DEPTH_ONE, SUBPIXEL_BITS, primitives};
 use super::kernels::plain;
 use super::loose::given;
 use super::{Scene, scenes};
-use crate::adapters::{devices, shape};
+use crate::adapters::devices;
 use crate::config;
 
 type Verdict = Result<(), TestCaseError>;
@@ -238,7 +239,7 @@ proptest! {
                     setting: scene.setting(),
                     drawn: drawn.each_ref(),
                     path: Path::Compute,
-                    cells: shape(gpu, kernels, &scene.blockers, &scene.grid),
+                    cells: Shape::checked(gpu, kernels, &scene.blockers, &scene.grid.axes).unwrap(),
                 };
                 let timed = Timed::new(gpu, kernels, &work).unwrap();
                 let timer = Timer::new(gpu, &Clock::Host(String::new()), 1).unwrap();

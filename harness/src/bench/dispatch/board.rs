@@ -1,13 +1,11 @@
 //! An adapter's wavefront: checked before it is timed, and after.
 
-use triptych_gpu::context::Gpu;
 use triptych_gpu::dispatch::{Room, Stages, Timed};
 use triptych_gpu::error::GpuError;
-use triptych_gpu::grid::{Device, Shape, Stages as Cells};
+use triptych_gpu::grid::Shape;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::timer::Timer;
 use triptych_spec::dispatch::Sums;
-use triptych_spec::grid::Membership;
 
 use super::super::legs::Station;
 use super::super::warm::wake;
@@ -35,10 +33,8 @@ pub(super) fn measure(
     let frame = stages.and_then(|mut stages| stages.frame(Room::default()));
     let frame = frame.map_err(words)?;
     confirm(run, &frame.sums)?;
-    let cells = match world.blockers.triangles.is_empty() {
-        true => None,
-        false => Some((&grid.axes, shape(gpu, checked, run).map_err(words)?)),
-    };
+    let shape = Shape::checked(gpu, checked, &world.blockers, &grid.axes).map_err(words)?;
+    let cells = shape.map(|shape| (&grid.axes, shape));
     let ready = Timed::new(gpu, kernels, world, cells, &frame.batches).map_err(words)?;
     let timer = Timer::new(gpu, &station.clock, 1).map_err(words)?;
     let once = || ready.time_whole(&timer);
@@ -71,16 +67,4 @@ fn confirm(run: &DispatchRun, sums: &Sums) -> Result<(), String> {
         0 => Ok(()),
         count => Err(format!("{count} pixels are not the spec's")),
     }
-}
-
-/// What a checked build of the cells needs.
-fn shape(gpu: &Gpu, kernels: &Kernels, run: &DispatchRun) -> Result<Shape, GpuError> {
-    let (blockers, axes) = (&run.setup.world.blockers, &run.setup.grid.axes);
-    let device = Device::new(gpu, kernels, blockers, axes, Membership::Box)?;
-    let mut cells = Cells::new(device)?;
-    cells.count()?;
-    let offsets = cells.scan()?;
-    let entries = offsets.last().copied().unwrap_or(0);
-    cells.fill(entries, entries)?;
-    Ok(Shape::of(&offsets, cells.chunks))
 }

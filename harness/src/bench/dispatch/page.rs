@@ -74,7 +74,9 @@ pub fn page(measured: &Measured) -> String {
          second are medians of the runs, with the smallest and the largest; speed-up is over the sequential \
          version of the same round. Idle time is a thread's in a frame, on average; access time is that of all \
          threads together; both are of runs of their own, since looking at the clock takes time. The last picture of each run \
-         was the spec's to the bit; with floats under a spin lock within their roundings, with Embree in 99 % of pixels.\n\n",
+         was the spec's to the bit; a GPU's within the bounds of the spec's light, one of floats under a spin lock within their \
+         roundings, Embree's in 99 % of pixels. While threads work on a frame, one more makes the rays of the next; a GPU puts \
+         the triangles into cells anew in each frame.\n\n",
         machine.cpu, machine.cores, machine.system, machine.version
     );
     text += "| method | what it is |\n|---|---|\n";

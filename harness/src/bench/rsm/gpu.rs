@@ -1,13 +1,12 @@
 //! An adapter: checked once, then timed.
 
 use triptych_gpu::error::GpuError;
-use triptych_gpu::grid::{self, Shape};
+use triptych_gpu::grid::Shape;
 use triptych_gpu::kernel::Kernels;
 use triptych_gpu::raster::Path;
 use triptych_gpu::rsm::{Span, Timed, Work};
 use triptych_gpu::timer::Timer;
-use triptych_spec::grid::Membership;
-use triptych_spec::rsm::{Parameters, Setting};
+use triptych_spec::rsm::Parameters;
 use triptych_spec::vertex::SUBPIXEL_BITS;
 
 use super::super::legs::Station;
@@ -34,7 +33,13 @@ pub(super) fn measure(
     let work = Work {
         drawn: case.drawn.each_ref(),
         path: path(station),
-        cells: shape(station, &setting).map_err(words)?,
+        cells: Shape::checked(
+            gpu,
+            &station.adapter.kernels,
+            setting.blockers,
+            &setting.grid.axes,
+        )
+        .map_err(words)?,
         setting,
     };
     let native = gpu.has_int64();
@@ -127,20 +132,4 @@ fn name(span: Span) -> &'static str {
         Span::Block => "B",
         Span::Compose => "compose",
     }
-}
-
-/// What the blockers' cells need, by a checked run.
-fn shape(station: &Station<'_>, setting: &Setting<'_>) -> Result<Option<Shape>, GpuError> {
-    let Setting { blockers, grid, .. } = setting;
-    if blockers.triangles.is_empty() {
-        return Ok(None);
-    }
-    let (gpu, kernels) = (&station.adapter.gpu, &station.adapter.kernels);
-    let device = grid::Device::new(gpu, kernels, blockers, &grid.axes, Membership::Box)?;
-    let mut stages = grid::Stages::new(device)?;
-    stages.count()?;
-    let offsets = stages.scan()?;
-    let entries = offsets.last().copied().unwrap_or(0);
-    stages.fill(entries, entries)?;
-    Ok(Some(Shape::of(&offsets, stages.chunks)))
 }
