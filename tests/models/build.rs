@@ -15,13 +15,14 @@ use std::{env, fs};
 use table::{MUTANTS, Mutant};
 
 /// Sources of the queues that are in every tree.
-const SHIPPED: [&str; 7] = [
+const SHIPPED: [&str; 8] = [
     "lfree",
     "line",
     "local",
     "lock",
     "node",
     "outstanding",
+    "part",
     "reclaim",
 ];
 

@@ -126,11 +126,18 @@ fn keys(browser: &mut Browser, place: &Place) {
     browser.key(back);
     x -= by;
     browser.wait(&lists_of([x, y]));
-    // The worst pixels go on from where the cursor is: they are alike, hence by rows.
-    browser.key("w");
-    browser.wait(&lists_of([x + 1, y]));
-    browser.key("W");
-    browser.wait(&lists_of([x, y]));
+    // The worst pixels go on from where the cursor is, and round.
+    let listed = browser.value(&format!(
+        "[...document.querySelectorAll('{SCENE} .pixel')].map((p) => p.dataset.at.split(',').map(Number))"
+    ));
+    let listed: Vec<[i64; 2]> = serde_json::from_value(listed).expect("columns and rows");
+    assert_eq!(listed.len(), 100, "as many as are named");
+    browser.click(&format!("{SCENE} .pixel"));
+    browser.wait(&lists_of(listed[0]));
+    for (key, nth) in [("w", 1), ("w", 2), ("W", 1), ("W", 0), ("W", 99), ("w", 0)] {
+        browser.key(key);
+        browser.wait(&lists_of(listed[nth]));
+    }
     browser.key("?");
     browser.wait("document.getElementById('keys').open");
     browser.key("Escape");

@@ -1,6 +1,7 @@
 //! Threads that are all alike, and the frames that they work on (paper listings 2 and 3).
 
 use std::any::Any;
+use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use super::gate::{End, Gate};
 use super::queue::outstanding::Outstanding;
-use super::queue::{Queue, Worker};
+use super::queue::{Part, Queue, Worker};
 
 /// When a thread takes a frame to be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,39 +58,42 @@ pub struct Crew {
 }
 
 /// A thread's way to the queue: what a task may add tasks with.
-pub struct Hands<'a, W> {
+pub type Hands<'a, W> = Part<'a, Watched<'a, W>>;
+
+/// A thread's end of the queue, beside a clock.
+pub struct Watched<'a, W> {
     worker: W,
-    outstanding: Option<&'a Outstanding>,
+    /// Whether to look at it.
     watched: bool,
+    /// When taking the last task, or finding none, began.
+    began: Option<Instant>,
     access: Duration,
+    /// Then there is nothing more to take.
+    given_up: &'a AtomicBool,
 }
 
-impl<W> Hands<'_, W> {
-    /// Adds a task; somebody will do it within this frame.
-    pub fn add<T>(&mut self, task: T)
-    where
-        W: Worker<T>,
-    {
-        if let Some(outstanding) = self.outstanding {
-            outstanding.add(1);
-        }
+impl<T, W: Worker<T>> Worker<T> for Watched<'_, W> {
+    fn add(&mut self, task: T) {
         let start = self.watched.then(Instant::now);
         self.worker.add(task);
-        self.access += start.map_or(Duration::ZERO, |start| start.elapsed());
+        self.access += since(start);
     }
 
-    /// Takes a task, and when that began if the clock is looked at.
-    fn get<T>(&mut self) -> (Option<T>, Option<Instant>)
-    where
-        W: Worker<T>,
-    {
-        let start = self.watched.then(Instant::now);
+    fn get(&mut self) -> Option<T> {
+        if self.given_up.load(Ordering::Relaxed) {
+            return None;
+        }
+        self.began = self.watched.then(Instant::now);
         let task = self.worker.get();
         if task.is_some() {
-            self.access += start.map_or(Duration::ZERO, |start| start.elapsed());
+            self.access += since(self.began);
         }
-        (task, start)
+        task
     }
+}
+
+fn since(start: Option<Instant>) -> Duration {
+    start.map_or(Duration::ZERO, |start| start.elapsed())
 }
 
 /// What the threads of a crew share while they work.
@@ -214,7 +218,7 @@ impl<Q, W> Shared<'_, Q, W> {
                 None
             });
             self.gate.leave(frame);
-            spent.idle += last.map_or(Duration::ZERO, |last| last.elapsed());
+            spent.idle += since(last);
         }
         spent
     }
@@ -227,31 +231,30 @@ impl<Q, W> Shared<'_, Q, W> {
     {
         let counted = self.crew.ending == Ending::Counted;
         let mut hands = Hands {
-            worker: self.queue.worker(number),
+            worker: Watched {
+                worker: self.queue.worker(number),
+                watched: self.crew.watched,
+                began: None,
+                access: Duration::ZERO,
+                given_up: &self.given_up,
+            },
             outstanding: counted.then_some(&self.outstanding),
-            watched: self.crew.watched,
-            access: Duration::ZERO,
         };
-        let mut found_nothing = 0_u32;
-        while !self.given_up.load(Ordering::Relaxed) {
-            let (task, start) = hands.get();
-            let Some(task) = task else {
-                if !counted || self.outstanding.is_over() {
-                    break;
-                }
-                found_nothing += 1;
-                wait(found_nothing);
-                spent.idle += start.map_or(Duration::ZERO, |start| start.elapsed());
-                continue;
-            };
-            found_nothing = 0;
-            (self.work)(&mut hands, task);
-            if counted {
-                self.outstanding.done(1);
-            }
+        // In a row, finding nothing.
+        let times = Cell::new(0_u32);
+        let work = |hands: &mut Hands<'_, _>, task| {
+            times.set(0);
+            (self.work)(hands, task);
             spent.tasks += 1;
-        }
-        spent.access += hands.access;
+        };
+        let pause = |watched: &mut Watched<'_, _>| {
+            times.set(times.get().saturating_add(1));
+            wait(times.get());
+            spent.idle += since(watched.began);
+            !self.given_up.load(Ordering::Relaxed)
+        };
+        hands.work_off(work, pause);
+        spent.access += hands.worker.access;
         self.crew.watched.then(Instant::now)
     }
 }

@@ -4,7 +4,8 @@
 //! listing 5, after Michael and Scott), and one of each thread's own ([`Local`]). Two of
 //! today's stand beside them: one shared list of blocks ([`Segments`]), and queues of each
 //! thread's own that others steal from ([`Stealing`]). All are behind one interface
-//! ([`Queue`], [`Worker`]), and whether a frame is over is [`Outstanding`]'s to say.
+//! ([`Queue`], [`Worker`]); a thread's loop over one is a [`Part`] of a frame, and whether that is over is
+//! [`Outstanding`]'s to say.
 //!
 //! Three things in the listings do not hold, and are otherwise here. Listing 4 reads in one
 //! lock what it writes in the other, and gives the value of the node that it takes away, which
@@ -21,6 +22,7 @@ pub mod local;
 pub mod lock;
 pub mod node;
 pub mod outstanding;
+pub mod part;
 pub mod reclaim;
 pub mod segments;
 pub mod steal;
@@ -31,6 +33,7 @@ pub use lfree::Lfree;
 pub use local::Local;
 pub use lock::Lock;
 pub use outstanding::Outstanding;
+pub use part::Part;
 pub use reclaim::{Epochs, Reclaim};
 pub use segments::Segments;
 pub use steal::Stealing;

@@ -70,10 +70,9 @@ pub fn runs<R: Send>(
         let first = number * size;
         run(first..(first + size).min(items))
     });
-    let mut runs = runs.into_iter();
-    let mut all = runs.next().unwrap_or_default();
-    all.reserve(items.saturating_sub(all.len()));
-    runs.for_each(|run| all.extend(run));
+    // As much room as is needed: a run may have nothing to say of most of its items.
+    let mut all = Vec::with_capacity(runs.iter().map(Vec::len).sum());
+    runs.into_iter().for_each(|run| all.extend(run));
     all
 }
 

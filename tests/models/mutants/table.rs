@@ -252,33 +252,27 @@ pub const MUTANTS: &[Mutant] = &[
     },
     Mutant {
         name: "frame: done before its children are counted",
-        file: "frame.rs",
-        edits: &[
-            ("                self.outstanding.done(1);\n", ""),
-            (
-                "self.outstanding.add(children.len());",
-                "self.outstanding.done(1); self.outstanding.add(children.len());",
-            ),
-        ],
+        file: "part.rs",
+        edits: &[(
+            "work(self, task);",
+            "if let Some(outstanding) = self.outstanding { outstanding.done(1); } work(self, task); continue;",
+        )],
         model: (Kind::Frame, 0, &["", ""], false),
         loom: Some((2, RACE)),
         shuttle: Some("a task was done 0 times when all was over"),
     },
     Mutant {
         name: "frame: children counted after they can be got",
-        file: "frame.rs",
+        file: "part.rs",
         edits: &[
+            ("outstanding.add(1);", "let _ = outstanding;"),
             (
-                "                self.outstanding.add(children.len());\n",
-                "",
-            ),
-            (
-                "children.for_each(|child| worker.add(child));",
-                "let count = children.len(); children.for_each(|child| worker.add(child)); self.outstanding.add(count);",
+                "self.worker.add(task);",
+                "self.worker.add(task); if let Some(outstanding) = self.outstanding { outstanding.add(1); }",
             ),
         ],
         model: (Kind::Frame, 0, &["", ""], false),
-        loom: Some((2, "1 done of 0")),
+        loom: Some((2, "when all was over")),
         shuttle: Some("when all was over"),
     },
     Mutant {

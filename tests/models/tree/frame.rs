@@ -1,9 +1,9 @@
-//! A frame's loop over the queue without locks, as the engine has it, with tasks that have
-//! children.
+//! A frame over the queue without locks, by the engine's loop, with tasks that have children.
 
 use super::held::Held;
 use super::lfree::Lfree;
 use super::outstanding::Outstanding;
+use super::part::Part;
 use super::sync::{Shim, UnsafeCell};
 use crate::support::how::{Checker, Count, How};
 use crate::support::traits::Queue;
@@ -35,28 +35,34 @@ impl Frame {
     /// Whether this thread left while there was something to do.
     #[expect(unsafe_code, reason = "a model's cells")]
     fn work(&self, rule: Rule, thread: usize) -> bool {
-        let worker = self.queue.worker(thread);
-        loop {
-            if let Some(task) = worker.get() {
-                // SAFETY: the checker fails if another thread has it.
-                self.written[task].with_mut(|written| unsafe { *written += 1 });
-                let children = if task == 0 { 1..TASKS } else { 0..0 };
-                self.outstanding.add(children.len());
-                children.for_each(|child| worker.add(child));
-                self.outstanding.done(1);
-            } else if rule == Rule::Empty {
-                return !self.outstanding.is_over();
-            } else if self.outstanding.is_over() {
-                for written in &self.written {
-                    // SAFETY: as above.
-                    let times = written.with(|written| unsafe { *written });
-                    assert_eq!(times, 1, "a task was done {times} times when all was over");
-                }
-                return false;
-            } else {
-                Shim::pause();
+        let counted = rule != Rule::Empty;
+        let mut part = Part {
+            worker: self.queue.worker(thread),
+            outstanding: counted.then_some(&self.outstanding),
+        };
+        // Where the frame does not count, the model does, to see who left early.
+        let own = (!counted).then_some(&self.outstanding);
+        let work = |part: &mut Part<'_, _>, task: usize| {
+            // SAFETY: the checker fails if another thread has it.
+            self.written[task].with_mut(|written| unsafe { *written += 1 });
+            let children = if task == 0 { 1..TASKS } else { 0..0 };
+            own.inspect(|own| own.add(children.len()));
+            children.for_each(|child| part.add(child));
+            own.inspect(|own| own.done(1));
+        };
+        let pause = |_: &mut _| {
+            Shim::pause();
+            true
+        };
+        part.work_off(work, pause);
+        if counted {
+            for written in &self.written {
+                // SAFETY: as above.
+                let times = written.with(|written| unsafe { *written });
+                assert_eq!(times, 1, "a task was done {times} times when all was over");
             }
         }
+        !self.outstanding.is_over()
     }
 }
 

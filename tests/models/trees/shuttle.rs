@@ -18,6 +18,8 @@ pub mod lock;
 pub mod node;
 #[path = "../../../harness/src/dispatch/queue/outstanding.rs"]
 pub mod outstanding;
+#[path = "../../../harness/src/dispatch/queue/part.rs"]
+pub mod part;
 #[path = "../../../harness/src/dispatch/queue/reclaim.rs"]
 pub mod reclaim;
 #[path = "../tree/run.rs"]
