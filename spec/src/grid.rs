@@ -13,6 +13,7 @@
 //! ([`axis::WIDENED`]), so that no ray misses what it meets. Twin: `gpu/src/grid.wgsl`.
 
 pub mod axis;
+mod cells;
 pub mod exact;
 pub mod hit;
 pub mod lattice;
@@ -24,6 +25,7 @@ pub mod trace;
 pub mod walk;
 
 use axis::Axis;
+pub use cells::{Cells, Membership, Slab, count, count_slab, fill, fill_slab, scan};
 use lattice::{EXTENT, Point};
 use resolution::Resolution;
 use thiserror::Error;
@@ -76,48 +78,6 @@ pub struct Grid {
     pub offsets: Vec<u32>,
     /// Rows of [`Blockers::triangles`], rising in each cell.
     pub prims: Vec<u32>,
-}
-
-/// Which cells of those that its box touches list a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Membership {
-    /// All of them, as in the paper.
-    Box,
-    /// Those that the triangle itself touches, when widened ([`overlap::touches`]).
-    Overlap,
-}
-
-/// The cells of three axes.
-#[derive(Clone, Copy, Debug)]
-pub struct Cells<'a> {
-    /// Boundaries on x, y and z.
-    pub axes: &'a [Axis; 3],
-    /// Which cells list a triangle.
-    pub membership: Membership,
-}
-
-impl Cells<'_> {
-    /// Number of cells; at most [`resolution::TOTAL_MAX`].
-    pub fn total(&self) -> usize {
-        self.axes.iter().map(|axis| axis.cells() as usize).product()
-    }
-
-    /// Numbers of the cells that list a triangle, rising.
-    pub fn of(&self, corners: [Point; 3]) -> impl Iterator<Item = usize> {
-        let [low, high] = bounds(corners);
-        let [x, y, z] = [0, 1, 2].map(|axis| {
-            let [first, last] = self.axes[axis].touched(low[axis], high[axis]);
-            first..=last
-        });
-        let rows = z.flat_map(move |k| y.clone().map(move |j| [j, k]));
-        let cells = rows.flat_map(move |[j, k]| x.clone().map(move |i| [i, j, k]));
-        cells
-            .filter(move |cell| match self.membership {
-                Membership::Box => true,
-                Membership::Overlap => overlap::touches(self.axes, *cell, corners),
-            })
-            .map(|cell| number(self.axes, cell))
-    }
 }
 
 impl Grid {
@@ -183,47 +143,6 @@ fn touched(axes: &[Axis; 3], corners: [Point; 3]) -> u64 {
         u64::from(last - first + 1)
     };
     on(0) * on(1) * on(2)
-}
-
-/// Stage `count`: how many triangles each cell lists.
-pub fn count(blockers: &Blockers, cells: &Cells) -> Vec<u32> {
-    let mut counts = vec![0; cells.total()];
-    for prim in 0..blockers.triangles.len() {
-        for cell in cells.of(blockers.corners(id(prim))) {
-            counts[cell] += 1;
-        }
-    }
-    counts
-}
-
-/// Stage `scan`: where each cell's run starts, and the end of the last.
-///
-/// # Errors
-/// More than [`ENTRIES_MAX`] entries.
-pub fn scan(counts: &[u32]) -> Result<Vec<u32>, GridError> {
-    let total = counts.iter().map(|count| u64::from(*count)).sum();
-    if total > ENTRIES_MAX {
-        return Err(GridError::Entries(total));
-    }
-    let mut end = 0;
-    let ends = counts.iter().map(|count| {
-        end += count;
-        end
-    });
-    Ok([0].into_iter().chain(ends).collect())
-}
-
-/// Stage `fill`: the ids of each cell, rising.
-pub fn fill(blockers: &Blockers, cells: &Cells, offsets: &[u32]) -> Vec<u32> {
-    let mut next = offsets.to_vec();
-    let mut prims = vec![0; offsets[offsets.len() - 1] as usize];
-    for prim in (0..blockers.triangles.len()).map(id) {
-        for cell in cells.of(blockers.corners(prim)) {
-            prims[next[cell] as usize] = prim;
-            next[cell] += 1;
-        }
-    }
-    prims
 }
 
 /// Which cells hold anything: a bit for each cell of a brick of 4 x 4 x 4, two words a

@@ -15,8 +15,7 @@ mod samples;
 
 use crate::scene::Size;
 use crate::vertex::Primitives;
-pub use count::count;
-use count::reaches;
+pub use count::{count, count_run, rows_between};
 use depth::Depth;
 pub use multisample::sample_nodes;
 pub use samples::{SAMPLES_MAX, Samples, samples_of};
@@ -206,7 +205,8 @@ pub fn cover_only(
 ) {
     let (size, bits) = (primitives.size, primitives.bits);
     let all = 0..column(primitives.prims.len() as i64);
-    for prim in all.filter(|prim| reaches(primitives, *prim) && select(*prim)) {
+    let reaches = |prim: &u32| !rows_between(primitives, *prim).is_empty();
+    for prim in all.filter(|prim| reaches(prim) && select(*prim)) {
         let Some(setup) = Setup::new(primitives, prim) else {
             continue;
         };

@@ -62,7 +62,7 @@ pub use parameters::{
 };
 pub use place::{PLACE_MAX, Place, place, project};
 pub(crate) use point::moved_off;
-pub use point::{Gbuffer, Surface, gbuffer};
+pub use point::{Gbuffer, Points, Surface, gbuffer};
 pub use same::same;
 pub use view::{View, Viewpoint};
 

@@ -10,7 +10,7 @@ mod clip;
 use crate::bound::Real;
 use crate::matrix::Matrix;
 use crate::raster::Samples;
-use crate::scene::{Scene, Size};
+use crate::scene::{Scene, Size, Vertex};
 
 pub use clip::{Plane, clip, clip_run, clip_triangle};
 
@@ -41,24 +41,6 @@ pub struct Polygons<T> {
     pub offsets: Vec<u32>,
     /// Corners in order.
     pub corners: Vec<Position<T>>,
-}
-
-impl<T: Copy> Polygons<T> {
-    /// None at all.
-    pub fn none() -> Self {
-        Self {
-            offsets: vec![0],
-            corners: Vec::new(),
-        }
-    }
-
-    /// Adds those of the triangles that follow.
-    pub fn append(&mut self, next: &Self) {
-        let before = row(self.corners.len());
-        self.corners.extend(&next.corners);
-        self.offsets
-            .extend(next.offsets[1..].iter().map(|end| before + end));
-    }
 }
 
 /// Triangles on the grid: what the raster stage starts from.
@@ -103,14 +85,19 @@ pub fn viewport(size: Size) -> Matrix {
 /// With `T = Bounded` each component carries the bound of an `f32` evaluation
 /// whose matrix entries were rounded to `f32` once.
 pub fn transform<T: Real>(scene: &Scene) -> Vec<Position<T>> {
+    transform_run(scene, &scene.vertices)
+}
+
+/// [`transform`] of some of a scene's vertices.
+pub fn transform_run<T: Real>(scene: &Scene, vertices: &[Vertex]) -> Vec<Position<T>> {
     let to_pixels = viewport(scene.size);
     let matrices: Vec<Matrix> = scene.instances.iter().map(|m| to_pixels.times(m)).collect();
-    let apply = |v: &crate::scene::Vertex| {
+    let apply = |v: &Vertex| {
         let m = &matrices[v.instance as usize];
         let [x, y, z] = v.position.map(f64::from);
         m.rows.map(|row| T::sum_of_products(row, [x, y, z, 1.0]))
     };
-    scene.vertices.iter().map(apply).collect()
+    vertices.iter().map(apply).collect()
 }
 
 /// A polygon's corner before rounding: x and y in sub-pixels, z in keys.
@@ -163,10 +150,10 @@ pub fn snap(scene: &Scene, polygons: &Polygons<f64>, bits: u32) -> Primitives {
         prims: Vec::new(),
         source: Vec::new(),
     };
-    for (t, range) in polygons.offsets.windows(2).enumerate() {
+    for (triangle, range) in polygons.offsets.windows(2).enumerate() {
         for corner in range[0] + 2..range[1] {
             primitives.prims.push([range[0], corner - 1, corner]);
-            primitives.source.push(row(t));
+            primitives.source.push(row(triangle));
         }
     }
     primitives

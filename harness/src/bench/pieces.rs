@@ -9,7 +9,7 @@ use triptych_spec::vertex::Primitives;
 use super::gpu::Refusal;
 use crate::compare::{compare, order};
 use crate::observe::{Gpu, Observed, Spec};
-use crate::replay::pieces::{self, Rows};
+use crate::replay::pieces::bands::{self, Rows};
 
 /// Fragments of all rows that are looked at, about.
 const LOOKED_AT: u64 = 1 << 23;
@@ -50,7 +50,7 @@ pub(super) fn looked_at(rows: &[u32]) -> Vec<Band> {
 /// The triangles as they lie in a target of these rows alone.
 pub(super) fn of_rows(primitives: &Primitives, band: Band) -> Primitives {
     let (first, count) = (band.first, band.rows);
-    pieces::of_rows(primitives, Rows { first, count })
+    bands::of_rows(primitives, Rows { first, count })
 }
 
 /// The sorted lists of some rows; pixels count from their first.

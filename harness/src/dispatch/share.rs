@@ -7,11 +7,11 @@
 
 use std::cell::Cell;
 use std::ops::Range;
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::thread;
 
-use super::crew::{Crew, Ending};
-use super::queue::Lfree;
+use super::queue::{Lfree, Part, Queue};
 
 /// Threads that were asked for; 0 for one on each core.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
@@ -44,7 +44,7 @@ pub fn with_threads<R>(threads: usize, work: impl FnOnce() -> R) -> R {
 pub fn threads() -> usize {
     let own = Some(OWN.get()).filter(|own| *own > 0);
     match own.unwrap_or_else(|| THREADS.load(Ordering::Relaxed)) {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        0 => thread::available_parallelism().map_or(1, usize::from),
         threads => threads,
     }
 }
@@ -102,34 +102,60 @@ pub fn all(items: usize, size: usize, holds: impl Fn(usize) -> bool + Sync) -> b
     !failed.into_inner()
 }
 
+/// Two jobs that are unlike.
+///
+/// # Panics
+/// With what one panics with.
+pub fn join<A: Send, B>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B) -> (A, B) {
+    if threads() <= 1 {
+        return (a(), b());
+    }
+    thread::scope(|scope| {
+        let a = scope.spawn(a);
+        let b = b();
+        (a.join().unwrap_or_else(|panic| resume_unwind(panic)), b)
+    })
+}
+
 /// What comes of each of so many pieces, by so many threads.
 fn by<R: Send>(threads: usize, count: usize, piece: impl Fn(usize) -> R + Sync) -> Vec<R> {
     let threads = threads.min(count);
     if threads <= 1 {
         return (0..count).map(piece).collect();
     }
-    let done = Mutex::new(Vec::with_capacity(count));
-    // No piece adds another, so an empty queue stays empty.
-    let crew = Crew {
-        threads,
-        ending: Ending::Empty,
-        watched: false,
+    let queue = Lfree::new();
+    queue.deal(0..count);
+    let help = |number| {
+        let mut done = Vec::new();
+        // No piece adds another, so an empty queue stays empty.
+        let mut part = Part {
+            worker: queue.worker(number),
+            outstanding: None,
+        };
+        part.work_off(|_, number| done.push((number, piece(number))), |_| false);
+        done
     };
-    crew.run(&Lfree::new(), 0..count, |_, number| {
-        let result = piece(number);
-        let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-        done.push((number, result));
+    let mut done = thread::scope(|scope| {
+        let help = &help;
+        let spawn = |number| scope.spawn(move || help(number));
+        let others: Vec<_> = (1..threads).map(spawn).collect();
+        // Who asks works as well: starting a thread takes as long as a small job.
+        let mut done = help(0);
+        for other in others {
+            done.extend(other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        }
+        done
     });
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     done.sort_unstable_by_key(|(number, _)| *number);
     done.into_iter().map(|(_, result)| result).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::any::Any;
     use std::panic::catch_unwind;
 
-    use super::{all, by, runs, threads, with_threads};
+    use super::{all, by, join, runs, threads, with_threads};
 
     #[test]
     fn results_are_in_order_whatever_the_threads() {
@@ -169,8 +195,19 @@ mod tests {
     }
 
     #[test]
+    fn both_of_two_jobs_are_done() {
+        for count in [1, 2] {
+            let made = with_threads(count, || join(|| vec![1, 2], || "three"));
+            assert_eq!(made, (vec![1, 2], "three"), "{count} threads");
+        }
+    }
+
+    #[test]
     fn a_piece_that_panics_is_heard() {
         let run = || by(3, 50, |n| assert!(n != 20, "piece 20"));
-        assert!(catch_unwind(run).is_err(), "the panic comes through");
+        let heard = |panic: Box<dyn Any + Send>| *panic.downcast::<&str>().expect("words");
+        assert_eq!(catch_unwind(run).map_err(heard), Err("piece 20"));
+        let other = || with_threads(2, || join(|| panic!("the other"), || ()));
+        assert_eq!(catch_unwind(other).map_err(heard), Err("the other"));
     }
 }

@@ -7,8 +7,12 @@ use triptych_spec::grid::lattice::{Lattice, LatticeError, Point};
 use triptych_spec::matrix::Matrix;
 use triptych_spec::rsm::Model;
 
+use crate::dispatch::share;
 use crate::scene::Loaded;
 use crate::scene::file::MeshEntry;
+
+/// Vertices of a piece of work.
+const VERTICES: usize = 1 << 13;
 
 /// What is seen in a frame, and what blocks.
 ///
@@ -27,10 +31,14 @@ pub(super) fn parts(
     };
     let snap = |row: u32| lattice.snap(points[row as usize]).unwrap_or_default();
     let seen = of.clone()(MeshEntry::is_seen);
-    let (vertices, triangles) = packed(seen.clone().map(|t| t.vertices), snap);
+    let (vertices, triangles) = packed(points.len(), seen.clone().map(|t| t.vertices), snap);
     let colours = seen.map(|t| [t.colour[0], t.colour[1], t.colour[2]]);
     let model = Model::new(vertices, triangles, colours.collect());
-    let (vertices, triangles) = packed(of(MeshEntry::does_block).map(|t| t.vertices), snap);
+    let (vertices, triangles) = packed(
+        points.len(),
+        of(MeshEntry::does_block).map(|t| t.vertices),
+        snap,
+    );
     let blockers = Blockers {
         vertices,
         triangles,
@@ -38,15 +46,16 @@ pub(super) fn parts(
     Ok((model.map_err(|e| e.to_string())?, blockers))
 }
 
-/// Triangles with only those vertices that they use, in order of first use.
+/// Triangles with only those of so many vertices that they use, in order of first use.
 fn packed(
+    count: usize,
     triangles: impl Iterator<Item = [u32; 3]>,
     point: impl Fn(u32) -> Point,
 ) -> (Vec<Point>, Vec<[u32; 3]>) {
-    let mut rows = std::collections::BTreeMap::new();
+    let mut rows = vec![None; count];
     let mut vertices = Vec::new();
     let mut row = |old: u32| {
-        *rows.entry(old).or_insert_with(|| {
+        *rows[old as usize].get_or_insert_with(|| {
             vertices.push(point(old));
             u32::try_from(vertices.len() - 1).expect("scenes have fewer than 2^32 rows")
         })
@@ -61,11 +70,9 @@ fn points(loaded: &Loaded, frame: u32) -> Vec<[f64; 3]> {
     let worlds: Vec<Matrix> = placed
         .map(|(world, entry)| moved(world, entry, frame))
         .collect();
-    let vertices = loaded.scene.vertices.iter();
-    let point = |v: &triptych_spec::scene::Vertex| {
+    share::map(&loaded.scene.vertices, VERTICES, |v| {
         worlds[v.instance as usize].point(v.position.map(f64::from))
-    };
-    vertices.map(point).collect()
+    })
 }
 
 /// Where a mesh stands in a frame: turned about its own origin, placed, and moved on.

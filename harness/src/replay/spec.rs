@@ -8,7 +8,7 @@ use triptych_spec::raster::{self, Fragment};
 use triptych_spec::scene::Scene;
 use triptych_spec::vertex::Primitives;
 
-use super::pieces::{Asked, draw};
+use super::pieces::{Asked, bands, draw};
 use super::rivals::Rivals;
 use crate::plan::Plan;
 
@@ -65,7 +65,7 @@ impl SpecRun {
     /// # Errors
     /// One line if the scene has more than [`FRAGMENTS_MAX`] fragments.
     pub fn new(scene: &Scene, primitives: Primitives, plan: &Plan) -> Result<Self, String> {
-        let count = raster::count(&primitives);
+        let count = bands::fragments(&primitives);
         if count > FRAGMENTS_MAX {
             return Err(format!(
                 "the triangles cover {count} fragments, more than the {FRAGMENTS_MAX} that a \

@@ -101,6 +101,18 @@ pub struct Rsm {
 }
 
 impl Rsm {
+    /// The second half of [`rsm`], of what the light sees.
+    pub fn lit(model: &Model, lamp: &Lamp, seen: Gbuffer, parameters: &Parameters) -> Self {
+        let intensity = |(texel, surface): (usize, &Option<Surface>)| match surface {
+            Some(surface) => lamp.intensity(model, texel, surface, parameters.stride),
+            None => DARK,
+        };
+        Self {
+            intensity: seen.surfaces.iter().enumerate().map(intensity).collect(),
+            seen,
+        }
+    }
+
     /// The texels that are lights, as later stages are given them: rounded to `f32` once,
     /// and no brighter than it can say.
     pub fn lights(&self) -> Vec<Option<Light>> {
@@ -117,13 +129,10 @@ impl Rsm {
 /// Stage `rsm`: [`gbuffer`] from the light, and the intensity of each texel, a light by
 /// itself (Dachsbacher and Stamminger 2005, section 3.1).
 pub fn rsm(model: &Model, lamp: &Lamp, parameters: &Parameters) -> Rsm {
-    let seen = gbuffer(model, &lamp.view, parameters);
-    let intensity = |(texel, surface): (usize, &Option<Surface>)| match surface {
-        Some(surface) => lamp.intensity(model, texel, surface, parameters.stride),
-        None => DARK,
-    };
-    Rsm {
-        intensity: seen.surfaces.iter().enumerate().map(intensity).collect(),
-        seen,
-    }
+    Rsm::lit(
+        model,
+        lamp,
+        gbuffer(model, &lamp.view, parameters),
+        parameters,
+    )
 }

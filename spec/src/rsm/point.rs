@@ -7,7 +7,7 @@ use crate::grid::exact::minus;
 use crate::grid::lattice::Point;
 use crate::matrix::Matrix;
 use crate::scene::Size;
-use crate::vertex::{SUBPIXEL_BITS, primitives, viewport};
+use crate::vertex::{Primitives, SUBPIXEL_BITS, primitives, viewport};
 
 /// What a pixel sees: integers that all later stages start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,28 +47,15 @@ pub fn gbuffer(model: &Model, view: &View, parameters: &Parameters) -> Gbuffer {
     let scene = view.scene(model);
     let primitives = primitives(&scene, SUBPIXEL_BITS);
     let nearest = opaque(&scene, &primitives);
-    let corners = Corners::new(model, view);
-    let mut seen = Gbuffer {
+    let points = Points::new(model, view, parameters);
+    let pixel = |(pixel, prim): (usize, &u32)| points.pixel(pixel, &primitives, *prim);
+    let (surfaces, stray) = nearest.prim.iter().enumerate().map(pixel).unzip();
+    Gbuffer {
         size: view.size,
         keys: nearest.key,
-        surfaces: vec![None; view.size.pixels()],
-        stray: vec![[0; 3]; view.size.pixels()],
-    };
-    for (pixel, prim) in nearest.prim.into_iter().enumerate() {
-        if prim == NOTHING {
-            continue;
-        }
-        let triangle = primitives.source[prim as usize];
-        let side = view.side(model, triangle);
-        let (point, stray) = corners.point(triangle, middle(pixel, view.size));
-        seen.surfaces[pixel] = Some(Surface {
-            triangle,
-            side,
-            point: moved_off(model, triangle, side, point, parameters.offset),
-        });
-        seen.stray[pixel] = stray;
+        surfaces,
+        stray,
     }
-    seen
 }
 
 /// Moves a point along the longest component of the face's normal to one side. Does not
@@ -97,21 +84,50 @@ fn middle(pixel: usize, size: Size) -> [f64; 2] {
     [pixel % width, pixel / width].map(|c| c as f64 + 0.5)
 }
 
-/// The corners of a model in homogeneous pixels, with and without bounds.
-struct Corners<'a> {
+/// The second half of [`gbuffer`], pixel by pixel, of triangles that are known.
+pub struct Points<'a> {
     model: &'a Model,
+    view: &'a View,
+    /// Of [`Parameters`].
+    offset: u32,
+    /// Corners in homogeneous pixels, with and without bounds.
     plain: Vec<[f64; 3]>,
     bounded: Vec<[Bounded; 3]>,
 }
 
-impl<'a> Corners<'a> {
-    fn new(model: &'a Model, view: &View) -> Self {
+impl<'a> Points<'a> {
+    /// Of a model as it is seen.
+    pub fn new(model: &'a Model, view: &'a View, parameters: &Parameters) -> Self {
         let matrix = viewport(view.size).times(&view.matrix);
         Self {
             model,
+            view,
+            offset: parameters.offset,
             plain: homogeneous(model, &matrix),
             bounded: homogeneous(model, &matrix),
         }
+    }
+
+    /// What a pixel sees where a triangle is nearest, or [`NOTHING`] is, and how far the point may be
+    /// from an evaluation's ([`Gbuffer::stray`]).
+    pub fn pixel(
+        &self,
+        pixel: usize,
+        primitives: &Primitives,
+        prim: u32,
+    ) -> (Option<Surface>, [u32; 3]) {
+        if prim == NOTHING {
+            return (None, [0; 3]);
+        }
+        let triangle = primitives.source[prim as usize];
+        let side = self.view.side(self.model, triangle);
+        let (point, stray) = self.point(triangle, middle(pixel, self.view.size));
+        let surface = Surface {
+            triangle,
+            side,
+            point: moved_off(self.model, triangle, side, point, self.offset),
+        };
+        (Some(surface), stray)
     }
 
     /// The point of a triangle at a pixel, and how far an evaluation may stray from it.

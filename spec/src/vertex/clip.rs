@@ -59,19 +59,22 @@ pub fn clip<T: Real>(scene: &Scene, positions: &[Position<T>]) -> Polygons<T> {
     clip_run(scene.size, &scene.triangles, positions)
 }
 
-/// [`clip`] of some of a scene's triangles, whose polygons those of others may follow
-/// ([`Polygons::append`]).
+/// [`clip`] of some of a scene's triangles.
 pub fn clip_run<T: Real>(
     size: Size,
     triangles: &[Triangle],
     positions: &[Position<T>],
 ) -> Polygons<T> {
     let planes = Plane::all(size);
-    let mut polygons = Polygons::none();
+    let mut clipper = Clipper::default();
+    let mut polygons = Polygons {
+        offsets: vec![0],
+        corners: Vec::new(),
+    };
     for triangle in triangles {
         let corners = triangle.vertices.map(|v| positions[v as usize]);
-        let polygon = clip_triangle(&planes, corners, |_, plain| plain);
-        polygons.corners.extend(polygon);
+        let polygon = clipper.clip(&planes, corners, |_, plain| plain);
+        polygons.corners.extend_from_slice(polygon);
         polygons.offsets.push(row(polygons.corners.len()));
     }
     polygons
@@ -85,24 +88,76 @@ pub fn clip_run<T: Real>(
 pub fn clip_triangle<T: Real>(
     planes: &[Plane; 6],
     corners: [Position<T>; 3],
-    mut decide: impl FnMut(T, bool) -> bool,
+    decide: impl FnMut(T, bool) -> bool,
 ) -> Vec<Position<T>> {
-    let mut polygon = corners.to_vec();
-    let mut sides = Vec::with_capacity(CORNERS_MAX);
-    for plane in planes {
-        sides.clear();
-        sides.extend(polygon.iter().map(|p| {
-            let distance = plane.distance(*p);
-            let inside = decide(distance, distance.value() >= 0.0);
-            Side { distance, inside }
-        }));
-        if sides.iter().any(|side| !side.inside) {
-            polygon = cut(&polygon, &sides);
+    Clipper::default().clip(planes, corners, decide).to_vec()
+}
+
+/// What is left of a triangle while it is clipped. The room is kept from one to the next: most
+/// are not cut at all.
+struct Clipper<T> {
+    polygon: Vec<Position<T>>,
+    sides: Vec<Side<T>>,
+    kept: Vec<Position<T>>,
+}
+
+impl<T> Default for Clipper<T> {
+    fn default() -> Self {
+        Self {
+            polygon: Vec::with_capacity(CORNERS_MAX),
+            sides: Vec::with_capacity(CORNERS_MAX),
+            kept: Vec::with_capacity(CORNERS_MAX),
         }
     }
-    // Fewer than three corners are left only of a triangle without area.
-    let visible = polygon.len() >= 3 && polygon.iter().all(|p| decide(p[3], p[3].value() > 0.0));
-    if visible { polygon } else { Vec::new() }
+}
+
+impl<T: Real> Clipper<T> {
+    /// [`clip_triangle`].
+    fn clip(
+        &mut self,
+        planes: &[Plane; 6],
+        corners: [Position<T>; 3],
+        mut decide: impl FnMut(T, bool) -> bool,
+    ) -> &[Position<T>] {
+        self.polygon.clear();
+        self.polygon.extend(corners);
+        for plane in planes {
+            self.sides.clear();
+            self.sides.extend(self.polygon.iter().map(|p| {
+                let distance = plane.distance(*p);
+                let inside = decide(distance, distance.value() >= 0.0);
+                Side { distance, inside }
+            }));
+            if self.sides.iter().any(|side| !side.inside) {
+                self.cut();
+            }
+        }
+        // Fewer than three corners are left only of a triangle without area.
+        let visible = self.polygon.len() >= 3
+            && (self.polygon.iter()).all(|p| decide(p[3], p[3].value() > 0.0));
+        if visible { &self.polygon } else { &[] }
+    }
+
+    /// Keeps what is inside.
+    fn cut(&mut self) {
+        let Self {
+            polygon,
+            sides,
+            kept,
+        } = self;
+        kept.clear();
+        for (i, (&a, &side_a)) in polygon.iter().zip(&*sides).enumerate() {
+            let next = (i + 1) % polygon.len();
+            let (b, side_b) = (polygon[next], sides[next]);
+            if side_a.inside {
+                kept.push(a);
+            }
+            if side_a.inside != side_b.inside {
+                kept.push(canonical_crossing(a, side_a.distance, b, side_b.distance));
+            }
+        }
+        std::mem::swap(polygon, kept);
+    }
 }
 
 /// Where a corner lies with respect to a plane.
@@ -110,21 +165,6 @@ pub fn clip_triangle<T: Real>(
 struct Side<T> {
     distance: T,
     inside: bool,
-}
-
-fn cut<T: Real>(polygon: &[Position<T>], sides: &[Side<T>]) -> Vec<Position<T>> {
-    let mut kept = Vec::with_capacity(CORNERS_MAX);
-    for (i, (&a, &side_a)) in polygon.iter().zip(sides).enumerate() {
-        let next = (i + 1) % polygon.len();
-        let (b, side_b) = (polygon[next], sides[next]);
-        if side_a.inside {
-            kept.push(a);
-        }
-        if side_a.inside != side_b.inside {
-            kept.push(canonical_crossing(a, side_a.distance, b, side_b.distance));
-        }
-    }
-    kept
 }
 
 /// The same point whichever of two neighbours asks.

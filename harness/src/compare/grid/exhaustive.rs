@@ -12,7 +12,7 @@ use crate::dispatch::share;
 use crate::row::Class;
 
 /// Rays of a piece of work.
-const RAYS: usize = 256;
+const RAYS: usize = 16;
 
 /// What a ray meets first of all triangles, whatever any cell lists; of those that are met
 /// at one time, the first.

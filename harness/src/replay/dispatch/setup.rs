@@ -7,6 +7,7 @@ use triptych_spec::grid::resolution::Resolution;
 use triptych_spec::grid::{Blockers, ENTRIES_MAX, Grid, GridError, Membership};
 use triptych_spec::scene::Size;
 
+use crate::replay::pieces;
 use crate::replay::placed::{self, nearest};
 use crate::scene::dispatch::LampEntry;
 use crate::scene::{Loaded, Mistake};
@@ -56,13 +57,13 @@ impl Setup {
             }
         });
         let materials: Vec<Material> = materials.collect();
-        let grid = Grid::build(&blockers, Resolution::FromScene, Membership::Box);
+        let built = pieces::build(&blockers, Resolution::FromScene, Membership::Box);
         let (background, depth) = (loaded.scene.background, section.depth.0);
         let world = World::new(blockers, &materials, lamps, background, eye, depth);
         Ok(Self {
             lattice,
             world: world.map_err(|e| Mistake::from(e.to_string()))?,
-            grid: grid.map_err(|e| cells(&e))?,
+            grid: built.map_err(|e| cells(&e))?.grid,
         })
     }
 }

@@ -194,7 +194,7 @@ impl Bounce {
 }
 
 /// Rays of a piece of work.
-const RAYS: usize = 512;
+const RAYS: usize = 64;
 
 /// A unit of a picture's sums.
 const UNIT: f64 = 1.0 / (1_u32 << triptych_spec::dispatch::UNIT_BITS) as f64;

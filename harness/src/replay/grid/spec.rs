@@ -5,17 +5,18 @@ use std::time::Duration;
 use triptych_spec::grid::lattice::{Lattice, LatticeError};
 use triptych_spec::grid::ray::Ray;
 use triptych_spec::grid::trace::{Closest, trace};
-use triptych_spec::grid::{Blockers, Cells, Grid, GridError, Membership, axes, count, fill, scan};
+use triptych_spec::grid::{Blockers, Grid, GridError, Membership};
 
 use crate::compare::grid::Runs;
 use crate::dispatch::share;
 use crate::rays::{Kind, draw};
+use crate::replay::pieces::{self, Built};
 use crate::replay::spec::timed;
 use crate::replay::work::{self, Meter, WORK_MAX};
 use crate::scene::{Loaded, Mistake};
 
-/// Rays of a piece of work.
-const RAYS: usize = 1024;
+/// Rays of a piece of work: few, as one that passes long lists takes milliseconds.
+const RAYS: usize = 32;
 
 /// How much of the lattice is left around the blockers, for rays that start there: an eighth
 /// of their box on each side.
@@ -68,26 +69,15 @@ impl GridRun {
         let (lattice, blockers) = blockers(loaded)?;
         let membership = section.membership();
         let limit = |e: GridError| Mistake::of("grid.resolution", e.to_string());
-        let axes = axes(&blockers, section.resolution()).map_err(limit)?;
-        let cells = Cells {
-            axes: &axes,
-            membership,
-        };
-        let (counts, count) = timed(|| count(&blockers, &cells));
-        let (offsets, scan) = timed(|| scan(&counts));
-        let offsets = offsets.map_err(limit)?;
-        let (prims, fill) = timed(|| fill(&blockers, &cells, &offsets));
+        let built = |membership| pieces::build(&blockers, section.resolution(), membership);
+        let Built {
+            counts,
+            grid,
+            times: [count, scan, fill],
+        } = built(membership).map_err(limit)?;
         let boxes = match membership {
             Membership::Box => None,
-            Membership::Overlap => {
-                let boxes = Grid::build(&blockers, section.resolution(), Membership::Box);
-                Some(boxes.map_err(limit)?)
-            }
-        };
-        let grid = Grid {
-            axes,
-            offsets,
-            prims,
+            Membership::Overlap => Some(built(Membership::Box).map_err(limit)?.grid),
         };
         let (rays, ends) = draw(&blockers, &grid, loaded.file.seed, &section.rays);
         within(&grid, &rays)?;

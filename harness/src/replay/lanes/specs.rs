@@ -3,22 +3,18 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use triptych_spec::raster::Samples;
-use triptych_spec::scene::{Scene, Triangle};
-use triptych_spec::vertex::{self, Polygons, Position, Primitives};
+use triptych_spec::vertex::Primitives;
 
-use crate::dispatch::share;
 use crate::observe::{Observed, Spec};
 use crate::replay::dispatch::DispatchRun;
 use crate::replay::grid::GridRun;
 use crate::replay::ldm::LdmRun;
+use crate::replay::pieces;
 use crate::replay::rsm::RsmRun;
 use crate::replay::run::Run;
-use crate::replay::spec::{SpecRun, Times, timed};
+use crate::replay::spec::{SpecRun, Times};
 use crate::replay::stop::Stop;
 use crate::scene::Mistake;
-
-/// Triangles that are clipped by themselves.
-const TRIANGLES: usize = 1 << 14;
 
 impl Run<'_> {
     /// The spec's results on a grid with the scene's samples, computed when first asked for. Only
@@ -57,9 +53,7 @@ impl Run<'_> {
 
     fn new_spec(&self, bits: u32, samples: Samples) -> Result<Observed<Spec, SpecRun>, Stop> {
         let scene = &self.loaded.scene;
-        let (positions, transform) = timed(|| vertex::transform(scene));
-        let (polygons, clip) = timed(|| clipped(scene, &positions));
-        let (primitives, snap) = timed(|| vertex::snap(scene, &polygons, bits));
+        let (primitives, [transform, clip, snap]) = pieces::primitives(scene, bits);
         let primitives = Primitives {
             samples,
             ..primitives
@@ -110,16 +104,6 @@ impl Run<'_> {
         self.dispatch = Some(spec.clone());
         Ok(spec)
     }
-}
-
-/// Stage clip, runs of triangles by themselves.
-fn clipped(scene: &Scene, positions: &[Position<f64>]) -> Polygons<f64> {
-    let runs: Vec<&[Triangle]> = scene.triangles.chunks(TRIANGLES).collect();
-    let parts = share::map(&runs, 1, |run| vertex::clip_run(scene.size, run, positions));
-    let mut parts = parts.into_iter();
-    let mut all = parts.next().unwrap_or_else(Polygons::none);
-    parts.for_each(|part| all.append(&part));
-    all
 }
 
 /// What is held, what another lane holds, or what is computed now: who asks for what another is

@@ -8,14 +8,10 @@ use triptych_spec::grid::lattice::{Lattice, Point};
 use triptych_spec::ldm::{
     self, FAR_MAX, Falloff, Maps, OFF_MAX, Receiver, directions, rotated, weight,
 };
-use triptych_spec::raster::count;
-use triptych_spec::rsm::{
-    Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, Surface, View, gbuffer,
-};
-use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
+use triptych_spec::rsm::{Gbuffer, Model, OFFSET_MIN, Parameters, RsmError, Surface, View};
 
-use crate::replay::placed;
 use crate::replay::spec::FRAGMENTS_MAX;
+use crate::replay::{pieces, placed};
 use crate::scene::{Loaded, Mistake};
 
 /// How far from the spec's a device's point may be in maps that are cropped, in steps along each axis:
@@ -89,7 +85,7 @@ impl Setup {
         let (model, blockers) = placed::parts(loaded, &lattice, 0)?;
         let eye = View::new(&camera, &lattice, loaded.scene.size);
         let eye = eye.map_err(|e| told(&e, &lattice))?;
-        let fragments = count(&primitives(&eye.scene(&model), SUBPIXEL_BITS));
+        let fragments = pieces::fragments_of(&model, &eye);
         if fragments > FRAGMENTS_MAX {
             let message = format!(
                 "the triangles cover {fragments} fragments, and {FRAGMENTS_MAX} are the limit; use a \
@@ -98,7 +94,7 @@ impl Setup {
             return Err(Mistake::of("size", message));
         }
         let offset = section.offset.0.max(OFFSET_MIN);
-        let seen = gbuffer(&model, &eye, &off_faces(offset));
+        let seen = pieces::gbuffer(&model, &eye, &off_faces(offset));
         let receivers = receivers((&model, &eye), &seen.surfaces, |_| off(offset));
         let normals = receivers.iter().map(|r| r.receiver.normal).collect();
         let falloff = match section.far {

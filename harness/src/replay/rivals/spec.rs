@@ -11,7 +11,7 @@ use triptych_spec::vertex::Primitives;
 
 use super::reduced::Halved;
 use crate::plan::Asked;
-use crate::replay::pieces;
+use crate::replay::pieces::bands;
 use crate::replay::spec::{SpecRun, timed};
 
 /// A picture.
@@ -147,14 +147,14 @@ impl Rivals {
         };
         let alpha =
             |prims: &Primitives, opaque: &Opaque| abuffer::alpha(scene, prims, opaque, target);
-        of.get_or_init(|| picture(|| pieces::picture(&spec.primitives, &spec.opaque, alpha)))
+        of.get_or_init(|| picture(|| bands::picture(&spec.primitives, &spec.opaque, alpha)))
     }
 
     /// Stage `weighted`.
     pub fn weighted(&self, scene: &Scene, spec: &SpecRun) -> &Picture {
         let weighted =
             |prims: &Primitives, opaque: &Opaque| abuffer::weighted(scene, prims, opaque);
-        let made = || picture(|| pieces::picture(&spec.primitives, &spec.opaque, weighted));
+        let made = || picture(|| bands::picture(&spec.primitives, &spec.opaque, weighted));
         self.weighted.get_or_init(made)
     }
 

@@ -1,13 +1,12 @@
 //! What all frames of a scene together may take.
 
 use triptych_spec::grid::ENTRIES_MAX;
-use triptych_spec::raster::count;
 use triptych_spec::rsm::{Frame, Light, Setting};
-use triptych_spec::vertex::{SUBPIXEL_BITS, primitives};
 
 use super::kernel::{of_coarse, pairs};
 use super::setup::{Parts, Setup};
 use crate::dispatch::share;
+use crate::replay::pieces;
 use crate::replay::spec::FRAGMENTS_MAX;
 use crate::replay::work::{self, Meter, WORK_MAX, Work};
 use crate::scene::Mistake;
@@ -62,7 +61,7 @@ impl Limits {
             return Err(Mistake::of("rsm.frames", message));
         }
         for view in [&setup.eye, &setup.lamp.view] {
-            self.fragments += count(&primitives(&view.scene(&parts.model), SUBPIXEL_BITS));
+            self.fragments += pieces::fragments_of(&parts.model, view);
         }
         if self.fragments > FRAGMENTS_MAX {
             let message = format!(

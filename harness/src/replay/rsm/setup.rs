@@ -9,6 +9,7 @@ use triptych_spec::rsm::{BIAS_MAX, Lamp, Model, OFFSET_MIN, Parameters, View};
 use triptych_spec::vertex::DEPTH_ONE;
 
 use super::told::Told;
+use crate::replay::pieces;
 use crate::replay::placed::{self, nearest, steps};
 use crate::scene::rsm::Rsm;
 use crate::scene::{Loaded, Mistake};
@@ -86,10 +87,10 @@ impl Setup {
     /// Whatever exceeds a limit of the spec, in one line.
     pub fn parts(&self, loaded: &Loaded, frame: u32) -> Result<Parts, Mistake> {
         let (model, blockers) = placed::parts(loaded, &self.lattice, frame)?;
-        let grid = Grid::build(&blockers, Resolution::FromScene, Membership::Box);
+        let built = pieces::build(&blockers, Resolution::FromScene, Membership::Box);
         Ok(Parts {
             model,
-            grid: grid.map_err(|e| cells(frame, &e))?,
+            grid: built.map_err(|e| cells(frame, &e))?.grid,
             blockers,
         })
     }

@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use triptych_spec::rsm::{
-    Blocked, Coarse, Colour, DARK, Frame, Setting, blur, compose, direct, gbuffer, place, rsm,
+    Blocked, Coarse, Colour, DARK, Frame, Rsm, Setting, blur, compose, direct, place,
 };
 
 use super::limits::Limits;
 use super::setup::{Parts, Setup};
 use super::shared::{blocked, gathered};
 use crate::plan::RsmPlan;
+use crate::replay::pieces;
 use crate::replay::rows::Spot;
 use crate::replay::spec::timed;
 use crate::report::Picture;
@@ -167,9 +168,12 @@ fn render(
         ..
     } = setting;
     let mut times = Times::default();
-    let (seen, at) = timed(|| gbuffer(model, eye, parameters));
+    let (seen, at) = timed(|| pieces::gbuffer(model, eye, parameters));
     times.gbuffer = at;
-    let (rsm, at) = timed(|| rsm(model, lamp, parameters));
+    let (rsm, at) = timed(|| {
+        let seen = pieces::gbuffer(model, &lamp.view, parameters);
+        Rsm::lit(model, lamp, seen, parameters)
+    });
     times.rsm = at;
     let (places, at) = timed(|| place(&lamp.view, &seen));
     times.place = at;

@@ -5,9 +5,10 @@ use triptych_spec::raster::count;
 use triptych_spec::scene::Size;
 use triptych_spec::vertex::primitives;
 
-use super::{Asked, Drawn, Rows, bands, draw, picture};
+use super::{Asked, Drawn, draw};
 use crate::corpus;
 use crate::dispatch::share::with_threads;
+use crate::replay::pieces::bands::{FRAGMENTS, Rows, bands, fragments, picture};
 use crate::scene::load;
 
 #[test]
@@ -39,7 +40,7 @@ fn bands_together_are_the_whole() {
         let file = corpus::root().join("abuffer").join(name).join("scene.toml");
         let scene = load(&file).unwrap_or_else(|e| panic!("{e}")).scene;
         let snapped = primitives(&scene, 8);
-        assert!(count(&snapped) >= super::FRAGMENTS, "{name} is taken apart");
+        assert!(count(&snapped) >= FRAGMENTS, "{name} is taken apart");
         let asked = Asked {
             cover: true,
             opaque: true,
@@ -48,6 +49,7 @@ fn bands_together_are_the_whole() {
         let whole = Drawn::new(&scene, &snapped, asked);
         for threads in [1, 3] {
             let made = with_threads(threads, || draw(&scene, &snapped, asked, u64::MAX));
+            assert_eq!(fragments(&snapped), count(&snapped), "{name}");
             assert_eq!(made.cover, whole.cover, "{name}");
             assert_eq!(made.opaque, whole.opaque, "{name}");
             assert_eq!(made.sorted, whole.sorted, "{name}");
