@@ -15,7 +15,8 @@ const FRACTION: u32 = 7;
 const LONGEST: f64 = (1_u32 << 22) as f64;
 
 /// A point or a direction that differs from pixel to pixel: `corner + x right + y down`, in
-/// units of 2^-7.
+/// units of 2^-7, to which each of the three is rounded: a pixel's is off by `(1 + x + y) / 256`
+/// at most, before it is rounded itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plane {
     /// Of the first pixel of the first row.
@@ -119,13 +120,26 @@ impl Eye {
                 let base = still(eye);
                 origin.corner = [0, 1, 2].map(|axis| origin.corner[axis] + base.corner[axis]);
                 let direction = still(forward.map(|c| c * LONGEST));
-                Ok(Self {
+                let eye = Self {
                     size,
                     origin,
                     direction,
-                })
+                };
+                // Rounded steps add up: to 17 at most in the last corner.
+                match eye.begins_within(REACH) {
+                    true => Ok(eye),
+                    false => Err(DispatchError::TooFar("the picture")),
+                }
             }
         }
+    }
+
+    /// Whether all rays begin where coordinates are at most `reach`: those of the corners do, then.
+    fn begins_within(&self, reach: i32) -> bool {
+        let [right, bottom] = [self.size.width - 1, self.size.height - 1];
+        let corners = [[0, 0], [right, 0], [0, bottom], [right, bottom]];
+        let within = |p: Point| p.iter().all(|c| (-reach..=reach).contains(c));
+        corners.iter().all(|[x, y]| within(self.origin.at(*x, *y)))
     }
 
     /// The ray of a pixel.

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use triptych_spec::camera::{Camera, Projection};
 use triptych_spec::dispatch::{Eye, primary};
+use triptych_spec::grid::lattice::REACH;
 use triptych_spec::scene::Size;
 
 use super::worlds::{UNIT, place};
@@ -55,6 +56,30 @@ proptest! {
             };
             prop_assert!((f64::from(ray.origin[i]) - origin).abs() <= off + 1e-6, "{:?} for {}", ray, origin);
             prop_assert!((f64::from(ray.direction[i]) - direction).abs() <= off + 1e-6, "{:?} for {}", ray, direction);
+        }
+    }
+
+    /// Where steps are rounded up, the last column is farther than the picture is wide.
+    #[test]
+    fn rays_begin_on_the_lattice(odd in 0..800_i32, beyond in -20..20_i32, turned in any::<bool>()) {
+        let size = Size { width: 2048, height: 4 };
+        // From one column to the next, in steps: an odd number and a half of units of 2^-7.
+        let step = (2.0 * f64::from(odd) + 1.5) / 128.0;
+        let half = 1024.0 * step;
+        let eye = (f64::from(REACH + beyond) - half).floor();
+        let side = if turned { -1.0 } else { 1.0 };
+        let camera = Camera {
+            eye: [side * eye, 0.0, 0.0],
+            target: [side * eye, 0.0, -1.0],
+            up: [0.0, side, 0.0],
+            projection: Projection::Orthographic { height: half / 256.0 },
+            near: 1.0,
+            far: 2.0,
+        };
+        let Ok(eye) = Eye::new(&camera, &UNIT, size) else { return Ok(()) };
+        for pixel in [0, 2047, 3 * 2048, 4 * 2048 - 1] {
+            let origin = eye.ray(pixel).origin;
+            prop_assert!(origin.iter().all(|c| c.abs() <= REACH), "{:?}", origin);
         }
     }
 

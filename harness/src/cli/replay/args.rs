@@ -55,7 +55,7 @@ pub struct Args {
     /// Run every leg again, whether anything changed or not
     #[arg(long)]
     no_cache: bool,
-    /// Threads over which the work of spec and Embree is spread; nothing but time depends on it
+    /// Threads over which work of spec and Embree is spread, for each leg at work; nothing but time depends on it
     /// [default: one on each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub(super) threads: Option<u32>,
