@@ -54,7 +54,7 @@ pub struct Options {
     pub runs: u32,
     /// Numbers of threads, rising.
     pub threads: Vec<usize>,
-    /// Only the paper's queues, and no adapter.
+    /// Only the paper's queues, with both endings.
     pub papers: bool,
     /// Today, year-month-day.
     pub date: String,

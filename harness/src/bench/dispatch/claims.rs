@@ -14,6 +14,9 @@ const CORES: usize = 24;
 /// LOCAL's access time is negligible beside the others' if it is a smaller part of them.
 const NEGLIGIBLE: f64 = 0.1;
 
+/// What is said where there are no figures.
+const NOT_MEASURED: &str = "not measured";
+
 /// A claim and what was seen.
 pub(super) struct Claim {
     /// In the paper's words, shortened.
@@ -73,13 +76,15 @@ fn best(measured: &Measured) -> Claim {
     Claim {
         says: "N23: LOCAL outperforms the other two under all settings",
         holds: (!leads.is_empty()).then_some(ahead == leads.len()),
-        seen: format!(
-            "more than 5 % ahead of the better of the two in {ahead} of {} settings, behind in {behind}; \
+        seen: match leads.len() {
+            0 => NOT_MEASURED.to_owned(),
+            settings => format!(
+                "more than 5 % ahead of the better of the two in {ahead} of {settings} settings, behind in {behind}; \
              {:+.0} % to {:+.0} %",
-            leads.len(),
-            100.0 * least,
-            100.0 * most
-        ),
+                100.0 * least,
+                100.0 * most
+            ),
+        },
     }
 }
 
@@ -131,7 +136,10 @@ fn alike(measured: &Measured) -> Claim {
     Claim {
         says: "N24: LOCK and LFREE are very similar up to 8 threads",
         holds: (!ratios.is_empty()).then_some(least >= 0.9 && most <= 1.1),
-        seen: format!("LFREE's frames a second are {least:.2} to {most:.2} of LOCK's"),
+        seen: match &ratios[..] {
+            [] => NOT_MEASURED.to_owned(),
+            _ => format!("LFREE's frames a second are {least:.2} to {most:.2} of LOCK's"),
+        },
     }
 }
 
@@ -142,11 +150,14 @@ fn ahead(measured: &Measured) -> Claim {
     Claim {
         says: "N24: LFREE clearly outperforms LOCK with 24 threads",
         holds: on_cores(measured, &ratios).then(|| ratios.iter().all(|ratio| *ratio > 1.0 + SAME)),
-        seen: format!(
-            "with {CORES} threads on {} cores LFREE's frames a second are {} of LOCK's",
-            measured.machine.cores,
-            listed(&told)
-        ),
+        seen: match &told[..] {
+            [] => NOT_MEASURED.to_owned(),
+            told => format!(
+                "with {CORES} threads on {} cores LFREE's frames a second are {} of LOCK's",
+                measured.machine.cores,
+                told.join(", ")
+            ),
+        },
     }
 }
 
@@ -157,7 +168,7 @@ fn on_cores(measured: &Measured, figures: &[f64]) -> bool {
 
 fn listed(told: &[String]) -> String {
     match told {
-        [] => "not measured".to_owned(),
+        [] => NOT_MEASURED.to_owned(),
         told => told.join("; "),
     }
 }
@@ -200,7 +211,7 @@ fn grows(measured: &Measured) -> Claim {
     Claim {
         says: "N25: access time grows exponentially with LOCK, sublinearly with LFREE",
         holds: (!told.is_empty()).then_some(holds),
-        seen: told.join("; "),
+        seen: listed(&told),
     }
 }
 
@@ -227,7 +238,8 @@ fn efficiency(measured: &Measured) -> Claim {
 
 fn uneven(measured: &Measured) -> Claim {
     let mut told = Vec::new();
-    let mut holds = true;
+    // With a thread for each core, or as near to it as there are figures: fewer may have luck.
+    let mut holds = None;
     let threads = measured.threads();
     let several = threads
         .iter()
@@ -237,15 +249,18 @@ fn uneven(measured: &Measured) -> Claim {
             continue;
         };
         let ratio = local.fps.median / lfree.fps.median;
-        holds &= ratio < 1.0 - SAME;
+        holds = Some(ratio < 1.0 - SAME);
         told.push(format!("{ratio:.2} with {threads}"));
     }
     Claim {
         says: "N27: LOCAL suffers where the depth of ray trees is very uneven",
-        holds: (!told.is_empty()).then_some(holds),
-        seen: format!(
-            "on {UNEVEN} LOCAL's frames a second over LFREE's: {}",
-            told.join(", ")
-        ),
+        holds,
+        seen: match &told[..] {
+            [] => NOT_MEASURED.to_owned(),
+            told => format!(
+                "on {UNEVEN} LOCAL's frames a second over LFREE's: {}",
+                told.join(", ")
+            ),
+        },
     }
 }

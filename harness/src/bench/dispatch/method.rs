@@ -49,6 +49,22 @@ impl Method {
     /// The paper's three.
     pub const PAPERS: [Self; 3] = [Self::Lock, Self::Lfree, Self::Local];
 
+    /// The paper's three, and those whose ending makes a difference with the other one: nobody adds to
+    /// another's LOCAL.
+    pub const PAPERS_COUNTED: [Self; 5] = [
+        Self::Lock,
+        Self::Lfree,
+        Self::Local,
+        Self::LockCounted,
+        Self::LfreeCounted,
+    ];
+
+    /// Queues with both endings: the paper's first, then the same counted.
+    pub const ENDINGS: [[Self; 2]; 2] = [
+        [Self::Lock, Self::LockCounted],
+        [Self::Lfree, Self::LfreeCounted],
+    ];
+
     /// When its threads take a frame to be done.
     pub fn ending(self) -> Ending {
         match self {

@@ -96,6 +96,7 @@ pub fn page(measured: &Measured) -> String {
         };
         let _ = writeln!(text, "| {} | {holds} | {} |", claim.says, claim.seen);
     }
+    text += &endings(measured);
     for scene in measured.scenes() {
         text += &table(measured, scene);
     }
@@ -106,6 +107,41 @@ pub fn page(measured: &Measured) -> String {
         }
     }
     text
+}
+
+/// What it makes of a frame that threads stay until no task is left.
+fn endings(measured: &Measured) -> String {
+    let mut text = String::from(
+        "\n## When a frame is over\n\n\
+         As in the paper a thread leaves a frame when it finds the queue empty; counted, it stays until no task is left. \
+         Frames a second, counted over as in the paper, and a thread's idle time in a frame.\n\n\
+         | scene | queue | threads | frames/s | idle, ms | counted |\n|---|---|---:|---:|---:|---:|\n",
+    );
+    let mut any = false;
+    for scene in measured.scenes() {
+        for [empty, counted] in Method::ENDINGS {
+            for threads in measured.threads() {
+                let of = |method| measured.row(scene, method, threads);
+                let (Some(empty), Some(counted)) = (of(empty), of(counted)) else {
+                    continue;
+                };
+                any = true;
+                let idle = |row: &Row| {
+                    row.spent
+                        .map_or_else(String::new, |s| format!("{:.3}", s.idle))
+                };
+                let _ = writeln!(
+                    text,
+                    "| {scene} | {} | {threads} | {:.2} | {} | {} |",
+                    empty.method.name(),
+                    counted.fps.median / empty.fps.median,
+                    idle(empty),
+                    idle(counted)
+                );
+            }
+        }
+    }
+    if any { text } else { String::new() }
 }
 
 /// A scene's rows.

@@ -109,7 +109,7 @@ fn scene(
             )),
         }
     }
-    for station in stations.iter().filter(|_| !options.papers) {
+    for station in stations {
         on_board(&scene, station, options, &alone, measured, progress);
     }
     Ok(())
@@ -158,7 +158,7 @@ fn trials(options: &Options) -> Vec<Trial> {
     };
     let mut trials = vec![trial(Method::Sequential, 1)];
     let methods = match options.papers {
-        true => &Method::PAPERS[..],
+        true => &Method::PAPERS_COUNTED[..],
         false => &Method::ON_THREADS[..],
     };
     for method in methods {

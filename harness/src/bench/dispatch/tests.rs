@@ -98,6 +98,12 @@ fn claims_are_judged_by_rows() {
     assert_eq!(holds(&measured)[4], None, "one number of threads");
     measured.rows.clear();
     assert_eq!(holds(&measured), [None; 7], "nothing is told of nothing");
+    let all = claims(&measured);
+    let silent = |seen: &str| seen.ends_with("not measured");
+    assert!(
+        all.iter().all(|claim| silent(&claim.seen)),
+        "nor seen in it"
+    );
 }
 
 /// What the paper says of 24 cores is judged where there are as many, by the rows of 24 threads.
@@ -145,6 +151,40 @@ fn every_row_is_in_table_and_values() {
         lines(&measured).len(),
         2 * (2 + 3),
         "two headings and three methods a scene"
+    );
+}
+
+#[test]
+fn endings_are_held_against_each_other() {
+    let mut measured = example();
+    assert!(
+        !page(&measured).contains("When a frame is over"),
+        "one ending"
+    );
+    let counted = measured
+        .rows
+        .iter()
+        .filter(|row| row.method == Method::Lfree);
+    let counted: Vec<Row> = counted
+        .map(|row| Row {
+            method: Method::LfreeCounted,
+            fps: Spread::of([row.fps.median / 2.0]),
+            spent: row.spent.map(|spent| Spent {
+                idle: 3.0 * spent.idle,
+                ..spent
+            }),
+            ..row.clone()
+        })
+        .collect();
+    measured.rows.extend(counted);
+    let page = page(&measured);
+    assert!(
+        page.contains("| dispatch/bunny | LFREE | 4 | 0.50 | 0.900 | 2.700 |"),
+        "{page}"
+    );
+    assert!(
+        !page.contains("| dispatch/bunny | LOCK | 4 | "),
+        "it has one ending"
     );
 }
 
