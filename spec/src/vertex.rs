@@ -85,13 +85,17 @@ pub fn viewport(size: Size) -> Matrix {
 /// With `T = Bounded` each component carries the bound of an `f32` evaluation
 /// whose matrix entries were rounded to `f32` once.
 pub fn transform<T: Real>(scene: &Scene) -> Vec<Position<T>> {
-    transform_run(scene, &scene.vertices)
+    transform_run(&to_pixels(scene), &scene.vertices)
 }
 
-/// [`transform`] of some of a scene's vertices.
-pub fn transform_run<T: Real>(scene: &Scene, vertices: &[Vertex]) -> Vec<Position<T>> {
-    let to_pixels = viewport(scene.size);
-    let matrices: Vec<Matrix> = scene.instances.iter().map(|m| to_pixels.times(m)).collect();
+/// Homogeneous pixels from the object space of each instance.
+pub fn to_pixels(scene: &Scene) -> Vec<Matrix> {
+    let viewport = viewport(scene.size);
+    scene.instances.iter().map(|m| viewport.times(m)).collect()
+}
+
+/// [`transform`] of some of a scene's vertices, with all of its matrices ([`to_pixels`]).
+pub fn transform_run<T: Real>(matrices: &[Matrix], vertices: &[Vertex]) -> Vec<Position<T>> {
     let apply = |v: &Vertex| {
         let m = &matrices[v.instance as usize];
         let [x, y, z] = v.position.map(f64::from);

@@ -43,7 +43,7 @@ impl Stages<'_> {
         })
     }
 
-    /// All bounces of some pixels.
+    /// All bounces of some pixels, and one beyond the world's depth if there are rays for it.
     fn batch(
         &mut self,
         [first, count]: [u32; 2],
@@ -56,7 +56,9 @@ impl Stages<'_> {
         self.time += self.device.primary(first, count, &queue)?.run(gpu)?;
         self.time += self.device.count(&queue)?.run(gpu)?;
         let mut needs = Vec::new();
-        while queue.items(gpu)? > 0 {
+        // Rays of one bounce too many are seen, and not followed: a kernel may make some for ever.
+        let most = self.device.task.depth as usize + 2;
+        while needs.len() < most && queue.items(gpu)? > 0 {
             if bounces.len() == needs.len() {
                 bounces.push(Bounce::default());
             }

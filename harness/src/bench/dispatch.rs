@@ -20,6 +20,7 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
+use std::cmp::Ordering;
 use std::num::NonZeroU32;
 
 use super::{Machine, Spread};
@@ -101,6 +102,10 @@ pub struct Measured {
     pub remarks: Vec<String>,
 }
 
+/// Frames per second whose medians differ by less are taken for the same, and so are those of settings whose
+/// runs overlap.
+const SAME: f64 = 0.05;
+
 /// A method with so many threads on a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
@@ -137,6 +142,19 @@ impl Row {
     /// Rays per second, by the median run.
     pub fn rays_per_second(&self) -> f64 {
         self.rays as f64 * self.fps.median
+    }
+
+    /// Whether it has more frames a second than another, or fewer; `None` if runs of both differ by more,
+    /// or medians by less than [`SAME`].
+    fn beside(&self, other: &Self) -> Option<Ordering> {
+        let (own, other) = (self.fps, other.fps);
+        if own.min > other.max && own.median > (1.0 + SAME) * other.median {
+            Some(Ordering::Greater)
+        } else if own.max < other.min && own.median < (1.0 - SAME) * other.median {
+            Some(Ordering::Less)
+        } else {
+            None
+        }
     }
 }
 

@@ -27,7 +27,7 @@ thread_local! {
     static OWN: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Has all jobs that this thread asks for meanwhile done by so many threads.
+/// Has all jobs that this thread asks for meanwhile done by so many threads. Pieces of a job ask for no others.
 pub fn with_threads<R>(threads: usize, work: impl FnOnce() -> R) -> R {
     /// Also if the work panics.
     struct Before(usize);
@@ -105,7 +105,7 @@ pub fn all(items: usize, size: usize, holds: impl Fn(usize) -> bool + Sync) -> b
 /// Two jobs that are unlike.
 ///
 /// # Panics
-/// With what one panics with.
+/// With what one panics with, and if the system starts no more threads.
 pub fn join<A: Send, B>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B) -> (A, B) {
     if threads() <= 1 {
         return (a(), b());
@@ -137,8 +137,12 @@ fn by<R: Send>(threads: usize, count: usize, piece: impl Fn(usize) -> R + Sync) 
     };
     let mut done = thread::scope(|scope| {
         let help = &help;
-        let spawn = |number| scope.spawn(move || help(number));
-        let others: Vec<_> = (1..threads).map(spawn).collect();
+        // Fewer help if the system starts no more threads.
+        let spawn = |number| {
+            let thread = thread::Builder::new();
+            thread.spawn_scoped(scope, move || help(number)).ok()
+        };
+        let others: Vec<_> = (1..threads).map_while(spawn).collect();
         // Who asks works as well: starting a thread takes as long as a small job.
         let mut done = help(0);
         for other in others {

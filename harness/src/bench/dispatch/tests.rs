@@ -84,8 +84,24 @@ fn claims_are_judged_by_rows() {
         row.fps = Spread::of([10.0 * row.threads as f64]);
     }
     let alike = holds(&measured);
-    assert_eq!(alike[0], Some(false), "LOCAL is no better");
-    assert_eq!(alike[6], Some(false), "nor worse where work is uneven");
+    assert_eq!(alike[0], None, "LOCAL is no better, nor behind");
+    assert_eq!(alike[6], None, "nor worse where work is uneven");
+    for row in &mut measured.rows {
+        if row.method == Method::Lfree {
+            let fps = row.fps.median;
+            row.fps = Spread::of([1.2 * fps, 1.3 * fps, 1.1 * fps]);
+        }
+    }
+    let faster = holds(&measured);
+    assert_eq!(faster[0], Some(false), "LOCAL is behind");
+    assert_eq!(faster[2], Some(false), "LFREE is ahead");
+    for row in &mut measured.rows {
+        let fps = row.fps.median;
+        row.fps = Spread::of([0.5 * fps, fps, 2.0 * fps]);
+    }
+    let unsteady = holds(&measured);
+    assert_eq!(unsteady[0], None, "runs overlap");
+    assert_eq!(unsteady[2], Some(true), "runs overlap");
     for row in &mut measured.rows {
         row.spent = row.spent.map(|spent| Spent {
             access: 1.0,

@@ -170,6 +170,11 @@ impl Band {
             NOTHING => NOTHING,
             prim => {
                 let own = self.prims.partition_point(|p| *p < prim);
+                debug_assert_eq!(
+                    self.prims.get(own),
+                    Some(&prim),
+                    "a surface lies in its triangle's rows"
+                );
                 u32::try_from(own).expect("fewer than 2^32 triangles")
             }
         };

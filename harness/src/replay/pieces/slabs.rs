@@ -23,7 +23,7 @@ pub struct Built {
     pub counts: Vec<u32>,
     /// The grid.
     pub grid: Grid,
-    /// Time of stages count, scan and fill.
+    /// Time of stages count, scan and fill on one core, without finding the slabs.
     pub times: [Duration; 3],
 }
 
@@ -42,12 +42,10 @@ pub fn build(
         membership,
     };
     let slabs = slabs(blockers, &cells);
-    let count = || share::map(&slabs, 1, |slab| count_slab(blockers, &cells, slab)).concat();
-    let (counts, count) = timed(count);
+    let (counts, count) = together(&slabs, |slab| count_slab(blockers, &cells, slab));
     let (offsets, scan) = timed(|| scan(&counts));
     let offsets = offsets?;
-    let fill = |slab: &Slab| fill_slab(blockers, &cells, &offsets, slab);
-    let (prims, fill) = timed(|| share::map(&slabs, 1, fill).concat());
+    let (prims, fill) = together(&slabs, |slab| fill_slab(blockers, &cells, &offsets, slab));
     let grid = Grid {
         axes,
         offsets,
@@ -58,6 +56,13 @@ pub fn build(
         grid,
         times: [count, scan, fill],
     })
+}
+
+/// What comes of all slabs, in order, and how long it takes on one core.
+fn together(slabs: &[Slab], of: impl Fn(&Slab) -> Vec<u32> + Sync) -> (Vec<u32>, Duration) {
+    let each = share::map(slabs, 1, |slab| timed(|| of(slab)));
+    let (each, times): (Vec<_>, Vec<Duration>) = each.into_iter().unzip();
+    (each.concat(), times.iter().sum())
 }
 
 /// All layers in order. How many slabs they are makes no difference to what comes of them.
@@ -81,7 +86,7 @@ fn slabs(blockers: &Blockers, cells: &Cells) -> Vec<Slab> {
     })
 }
 
-/// All of so many layers in at most so many parts, in which triangles touch about equally many.
+/// All of so many layers in about so many parts, which triangles touch about equally often. No layer is cut.
 fn even(touched: &[Range<u32>], layers: u32, parts: usize) -> Vec<Range<u32>> {
     let mut more = vec![0_i64; layers as usize + 1];
     for own in touched {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use triptych_spec::scene::Scene;
+use triptych_spec::scene::{Scene, Vertex};
 use triptych_spec::vertex::{self, Position, Primitives};
 
 use crate::dispatch::share;
@@ -13,8 +13,7 @@ const RUN: usize = 1 << 13;
 
 /// Stages transform, clip and snap, and how long each takes on one core.
 pub fn primitives(scene: &Scene, bits: u32) -> (Primitives, [Duration; 3]) {
-    let run = |run| vertex::transform_run(scene, &scene.vertices[run]);
-    let (positions, transform) = timed(|| share::runs(scene.vertices.len(), RUN, run));
+    let (positions, transform) = transformed(scene);
     let runs = share::each(scene.triangles.len().div_ceil(RUN), |number| {
         Run::new(scene, &positions, number * RUN, bits)
     });
@@ -39,6 +38,15 @@ pub fn primitives(scene: &Scene, bits: u32) -> (Primitives, [Duration; 3]) {
         times[2] += run.times[1];
     }
     (all, times)
+}
+
+/// Stage transform.
+fn transformed(scene: &Scene) -> (Vec<Position<f64>>, Duration) {
+    let (matrices, first) = timed(|| vertex::to_pixels(scene));
+    let runs: Vec<_> = scene.vertices.chunks(RUN).collect();
+    let run = |run: &&[Vertex]| timed(|| vertex::transform_run(&matrices, run));
+    let (positions, times): (Vec<_>, Vec<Duration>) = share::map(&runs, 1, run).into_iter().unzip();
+    (positions.concat(), first + times.iter().sum::<Duration>())
 }
 
 /// What comes of a run of triangles.
